@@ -40,6 +40,8 @@ using LargeVector = std::vector<T, LargePages<T>>;
 class LargeBuffer {
  public:
   LargeBuffer() = default;
+  /// Of so many bytes, of any values. Throws std::bad_alloc.
+  explicit LargeBuffer(std::size_t bytes) : memory_(allocate_large(bytes)), bytes_(bytes) {}
   LargeBuffer(LargeBuffer&& other) noexcept;
   LargeBuffer& operator=(LargeBuffer&& other) noexcept;
   LargeBuffer(const LargeBuffer&) = delete;
@@ -48,6 +50,7 @@ class LargeBuffer {
 
   /// So many bytes at least, of any values. Throws std::bad_alloc, and then holds nothing.
   std::uint8_t* hold(std::size_t bytes);
+  std::uint8_t* data() { return static_cast<std::uint8_t*>(memory_); }
 
  private:
   void* memory_ = nullptr;

@@ -50,7 +50,8 @@ struct FoundLoop {
   Stamp from;
   Stamp to;
   mrpt::math::TPose2D T_from_to;
-  std::string end;  ///< what became of it, in the words of loops.csv (docs/slam.md)
+  std::optional<mrpt::math::TPose2D> T_map_from;  ///< in the map as it is now; nothing where that is not known
+  std::string end;                                ///< what became of it, in the words of loops.csv (docs/slam.md)
   // The tests, shares of the points; nothing where it was not asked.
   std::optional<double> inliers;
   std::optional<double> contradiction;           ///< seen through walls there

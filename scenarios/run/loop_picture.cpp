@@ -63,15 +63,15 @@ GridFrame known_frame(const slam::CountMap& map) {
 class Ground {
  public:
   explicit Ground(const slam::CountMap& map) : frame_(known_frame(map)), scale_(pixels_per_cell(frame_)) {
-    picture_ = cv::Mat(frame_.height * scale_, frame_.width * scale_, CV_8UC3, cv::Scalar(kDark));
     const OccupancyGrid known = map.classify();
+    cv::Mat cells(frame_.height, frame_.width, CV_8UC3, cv::Scalar(kDark));
     for (int y = 0; y < frame_.height; ++y)
       for (int x = 0; x < frame_.width; ++x) {
         const Occupancy here = occupancy_at(known, frame_.centre({x, y}));
         if (here == Occupancy::Unknown) continue;
-        const cv::Rect cell(x * scale_, (frame_.height - 1 - y) * scale_, scale_, scale_);
-        picture_(cell).setTo(cv::Scalar(here == Occupancy::Occupied ? kWall : kGround));
+        cells.at<cv::Vec3b>(frame_.height - 1 - y, x) = here == Occupancy::Occupied ? kWall : kGround;
       }
+    cv::resize(cells, picture_, {}, scale_, scale_, cv::INTER_NEAREST);
   }
 
   const GridFrame& frame() const { return frame_; }
@@ -89,10 +89,9 @@ class Ground {
   cv::Mat picture_;
 };
 
-/// Where the older place lies. That of an earlier drive has a stamp of another clock: what the loop itself says does.
-TPoint2D older_place(const slam::Mapper& mapper, const FoundLoop& loop, const TPose2D& T_map_to) {
-  const std::optional<TPose2D> known = mapper.pose_at(loop.from);
-  return position(known && !loop.closed() ? *known : T_map_to + (TPose2D() - loop.T_from_to));
+/// Where the older place lies: where that is not known, where the loop itself says.
+TPoint2D older_place(const FoundLoop& loop, const TPose2D& T_map_to) {
+  return position(loop.T_map_from ? *loop.T_map_from : T_map_to + (TPose2D() - loop.T_from_to));
 }
 
 void draw_loops(const slam::Mapper& mapper, const std::vector<FoundLoop>& loops, Ground& ground) {
@@ -105,8 +104,7 @@ void draw_loops(const slam::Mapper& mapper, const std::vector<FoundLoop>& loops,
       const std::optional<TPose2D> to = mapper.pose_at(loop.to);
       if (!to) continue;
       const cv::Point newer = ground.at(position(*to));
-      cv::line(ground.picture(), newer, ground.at(older_place(mapper, loop, *to)), cv::Scalar(style.ink), 2,
-               cv::LINE_AA);
+      cv::line(ground.picture(), newer, ground.at(older_place(loop, *to)), cv::Scalar(style.ink), 2, cv::LINE_AA);
       cv::circle(ground.picture(), newer, 3, cv::Scalar(style.ink), cv::FILLED, cv::LINE_AA);
     }
 }
@@ -142,8 +140,10 @@ void draw_mark(cv::Mat& picture, const cv::Point& at, const TestSeries& test) {
 
 /// Over all scans, from the first to the last.
 cv::Mat tests_picture(const slam::Mapper& mapper, const std::vector<FoundLoop>& loops, int width) {
-  const Stamp first = mapper.trajectory().front().stamp;
-  const double seconds = std::max(1e-3, mapper.trajectory().back().stamp - first);
+  const Trajectory& scans = mapper.trajectory();
+  const Stamp first = scans.empty() ? loops.front().to : std::min(loops.front().to, scans.front().stamp);
+  const Stamp last = scans.empty() ? loops.back().to : std::max(loops.back().to, scans.back().stamp);
+  const double seconds = std::max(1e-3, last - first);
   cv::Mat picture(kTestsTop + kTestsHeight + kTestsBelow, width, CV_8UC3, cv::Scalar(255, 255, 255));
   const int across = width - kTestsLeft - kTestsRight, bottom = kTestsTop + kTestsHeight;
   const cv::Scalar faint(235, 235, 235);

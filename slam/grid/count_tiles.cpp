@@ -1,6 +1,7 @@
 #include "slam/grid/count_tiles.h"
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 namespace rubble::slam {
@@ -17,8 +18,7 @@ int tiles_over(int cells) { return (cells + CountTiles::kSide - 1) / CountTiles:
 
 CountTiles::CountTiles(int width, int height) {
   lay_out(width, height);
-  slabs_.emplace_back(std::min(tiles_.size(), kSlab));
-  left_ = slabs_.back().size();
+  take_slab(std::min(tiles_.size(), kSlab));
 }
 
 CountTiles::CountTiles(const CountTiles& other)
@@ -44,22 +44,23 @@ void CountTiles::lay_out(int width, int height) {
 }
 
 CountTiles::Tile& CountTiles::open(std::size_t number) {
-  Tile* tile = nullptr;
+  void* place = nullptr;
   if (!given_back_.empty()) {
-    tile = given_back_.back();
+    place = given_back_.back();
     given_back_.pop_back();
-    *tile = Tile{};
   } else {
-    if (left_ == 0) {
-      slabs_.emplace_back(kSlab);
-      left_ = kSlab;
-    }
-    LargeVector<Tile>& slab = slabs_.back();
-    tile = &slab[slab.size() - left_--];
+    if (left_ == 0) take_slab(kSlab);
+    place = slabs_.back().data() + (slab_ - left_--) * sizeof(Tile);
   }
+  Tile* const tile = new (place) Tile{};  // zeros: touched tile by tile, not a slab at once
   tiles_[number] = tile;
   shown_[number] = tile;
   return *tile;
+}
+
+void CountTiles::take_slab(std::size_t tiles) {
+  slabs_.emplace_back(tiles * sizeof(Tile));
+  slab_ = left_ = tiles;
 }
 
 void CountTiles::clear(int width, int height) {

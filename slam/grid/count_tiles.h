@@ -61,14 +61,16 @@ class CountTiles {
            static_cast<std::size_t>(c.x / kSide);
   }
   Tile& open(std::size_t number);
+  void take_slab(std::size_t tiles);
   void lay_out(int width, int height);
 
   int across_ = 0;
   int down_ = 0;
   std::vector<Tile*> tiles_;
-  std::vector<const Tile*> shown_;        ///< the same with a tile of zeros where nothing was counted
-  std::vector<LargeVector<Tile>> slabs_;  ///< where tiles lie
-  std::size_t left_ = 0;                  ///< tiles of the last slab that were never given out
+  std::vector<const Tile*> shown_;  ///< the same with a tile of zeros where nothing was counted
+  std::vector<LargeBuffer> slabs_;  ///< where tiles lie
+  std::size_t slab_ = 0;            ///< tiles of the last slab ...
+  std::size_t left_ = 0;            ///< ... of which so many were never given out
   std::vector<Tile*> given_back_;
 };
 

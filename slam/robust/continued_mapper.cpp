@@ -162,7 +162,7 @@ MergedMap merged(const SavedMap& first, const SavedMap& second, const RobustConf
       if (compass.direction()) both.frames.set_walls(*compass.direction(), compass.variance());
     }
     LoopCloser closer(config.loop, config.tracker.cell, both.frames);
-    closer.begin_anew();
+    closer.begin_anew(std::nullopt);
     closer.finish();
     both.frame_covariance = closer.covariance();
   }

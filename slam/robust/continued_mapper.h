@@ -53,7 +53,10 @@ class ContinuedMapper : public Mapper {
   std::vector<MapperFigure> figures() const override;
   const ScanRecords* scan_records() const override { return &records_; }
   std::string loop_table(const StampName& name) const override { return drive_->loop_table(name); }
-  std::vector<FoundLoop> found_loops() const override { return drive_->found_loops(); }
+  /// None while the place is not known: where they lie in the map is not known either.
+  std::vector<FoundLoop> found_loops() const override {
+    return joined_ ? drive_->found_loops() : std::vector<FoundLoop>();
+  }
   std::string saved_map() const override;
 
  private:

@@ -509,7 +509,7 @@ void RobustMapper::Impl::go_on_in(KeyFrames frames, StampedMap map, const TPose2
       scans_[k].T_frame_base = poses[k] - frames_.pose(here_);
     }
   }
-  closer_.begin_anew();
+  closer_.begin_anew(grows ? std::optional(shift) : std::nullopt);
   if (!grows) T_matched_frame_.reset();
   compass_ = WallCompass();  // what it knew was of the drive's frame
   set_compass_right();
@@ -588,8 +588,9 @@ std::string RobustMapper::loop_table(const StampName& name) const { return csv_o
 std::vector<FoundLoop> RobustMapper::found_loops() const {
   std::vector<FoundLoop> found;
   for (const LoopRecord& record : impl_->closer_.records())
-    found.push_back({record.old_stamp, record.stamp, record.T_old_new, name_of(record.end), record.inliers,
-                     record.contradiction, record.expected_contradiction});
+    found.push_back({record.old_stamp, record.stamp, record.T_old_new,
+                     record.old_frame < 0 ? std::nullopt : std::optional(impl_->frames_.pose(record.old_frame)),
+                     name_of(record.end), record.inliers, record.contradiction, record.expected_contradiction});
   return found;
 }
 const KeyFrames& RobustMapper::key_frames() const { return impl_->frames_; }

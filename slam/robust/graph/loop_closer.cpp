@@ -100,7 +100,9 @@ std::vector<LoopCloser::Candidate> LoopCloser::candidates_within(int frame, int 
 }
 
 /// Other key frames have taken the place of those before: what waits is forgotten, edges that are there are known.
-void LoopCloser::begin_anew() {
+void LoopCloser::begin_anew(const std::optional<int>& shift) {
+  for (LoopRecord& record : records_)
+    record.old_frame = shift && record.old_frame >= 0 ? record.old_frame + *shift : -1;
   tasks_.clear();
   search_.stop();
   closed_for_ = frames_.last();
@@ -263,6 +265,7 @@ void LoopCloser::go_on(Work& budget) {
   LoopRecord record;
   record.stamp = frames_[task_.frame].stamp;
   record.old_stamp = frames_[task_.old].stamp;
+  record.old_frame = task_.old;
   record.path = task_.path;
   record.window = task_.window;
   record.score = best.score;

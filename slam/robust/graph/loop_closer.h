@@ -96,8 +96,9 @@ class LoopCloser {
  public:
   LoopCloser(const LoopConfig& config, double surfel_cell, KeyFrames& frames);
 
-  /// Takes the key frames as they are now for those of a map that was loaded.
-  void begin_anew();
+  /// Takes the key frames as they are now for those of a map that was loaded. `shift`: what the numbers of those of
+  /// before rose by, where they are among them.
+  void begin_anew(const std::optional<int>& shift);
   /// Queues the searches for the newest key frame.
   void look(Work* work = nullptr);
   /// Does queued work until `budget` is used up; returns whether poses moved.

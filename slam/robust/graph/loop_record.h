@@ -16,6 +16,7 @@ struct LoopRecord {
   enum class End { Ambiguous, Unfit, Contradicted, Needless, Waits, Closed, Removed };
 
   Stamp stamp;                    ///< of the newer key frame
+  int old_frame = -1;             ///< its number; -1: not among those that are there now
   Stamp old_stamp;                ///< of the older one; in a map that was gone on with by the clock of its own drive
   double path = 0.0;              ///< from one to the other through the graph [m]
   double window = 0.0;            ///< half width of the search [m]

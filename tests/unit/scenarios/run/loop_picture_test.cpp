@@ -60,11 +60,19 @@ TEST_F(LoopPicture, EachPlaceIsALineInTheColourOfItsEnd) {
   EXPECT_LT(longest_row(one, kOrange), 10);
 }
 
-TEST_F(LoopPicture, AnOlderPlaceOfAnotherClockLiesWhereTheLoopSays) {
-  const cv::Mat picture = loop_picture(mapper_, {loop(-1000, 1, "closed")});
-  EXPECT_GE(longest_row(picture, kGreen), way_);
+TEST_F(LoopPicture, AnOlderPlaceLiesWhereTheMapperHasItElseWhereTheLoopSays) {
+  // By the clock of this drive the older stamp lies one way, in the map the other: it is of an earlier drive.
+  FoundLoop earlier = loop(2, 1, "contradicted");
+  earlier.T_map_from = mrpt::math::TPose2D{-1.0, 0.01, 0.0};
+  EXPECT_GE(longest_row(loop_picture(mapper_, {earlier}), kOrange), way_);
+  EXPECT_GE(longest_row(loop_picture(mapper_, {loop(-1000, 1, "closed")}), kGreen), way_);
   const cv::Mat nowhere = loop_picture(mapper_, {loop(0, 1000, "contradicted")});
   EXPECT_LT(longest_row(nowhere, kOrange), way_ / 2) << "of a newer place that nobody knows only the legend tells";
+}
+
+TEST_F(LoopPicture, AMapperThatDoesNotKnowWhereItIsYetIsDrawnAsWell) {
+  const cv::Mat picture = loop_picture(test::PlantedMapper(), {loop(0, 1, "closed"), loop(0, 2, "unfit")});
+  EXPECT_GE(picture.cols, 700);
 }
 
 TEST_F(LoopPicture, TestsThatWereNotAskedHaveNoMark) {

@@ -7,6 +7,7 @@
 #include <mrpt/poses/CPose3D.h>
 #include <mrpt/poses/CPose3DPDF.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -17,6 +18,7 @@
 #include "base/error.h"
 #include "base/round_step.h"
 #include "base/text/text_file.h"
+#include "slam/mappers.h"
 #include "slam/robust/map/saved_map.h"
 #include "slam/robust/robust_mapper.h"
 #include "tests/support/slam_floor.h"
@@ -65,6 +67,29 @@ TEST_F(MapFiles, TheMapIsReadBackFromFolderAndFile) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("holds no map.rmap"));
   }
+}
+
+/// A drive on another floor than its map closes loops, but nobody knows where they lie on that.
+TEST_F(MapFiles, LoopsOfADriveWhosePlaceIsNotKnownAreTabledButNotDrawn) {
+  const slam_test::Floor other(8, 4, 3);
+  std::vector<Cell> rooms{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1}, {3, 2}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
+  rooms.insert(rooms.end(), rooms.begin(), rooms.begin() + 4);
+  slam::MapperConfig config;
+  config.choose("robust");
+  for (const bool grows : {true, false}) {
+    const std::shared_ptr<slam::Mapper> drive = config.make({}, {1, "", load_map_base(path_, grows, std::nullopt)});
+    for (const auto& tick : slam_test::record(other.world(), slam_test::drive_through(other.way(rooms), 0.0),
+                                              robot::RobotModel(), 1.0, 0.01, 3))
+      drive->update(tick);
+    drive->finish();
+    ASSERT_TRUE(drive->trajectory().empty());
+    const RunFolder folder(path_ + "/other" + (grows ? "-grows" : ""), false);
+    save_map_files(folder, *drive);
+    const std::string loops = read_text_file(folder.file("loops.csv"));
+    EXPECT_GE(std::count(loops.begin(), loops.end(), '\n'), 2);
+    EXPECT_FALSE(fs::exists(folder.file("loops.png")));
+  }
+  EXPECT_TRUE(fs::exists(path_ + "/loops.png")) << "of the drive whose map it is";
 }
 
 TEST_F(MapFiles, ScansHaveALineEach) {
