@@ -56,14 +56,37 @@ Ticks with_scans(Ticks ticks, const std::function<bool(std::size_t)>& which,
 TEST(RobustBadInput, GoodInputIsMappedWell) { expect_good(outcome(tour(1))); }
 
 TEST(RobustBadInput, ScansThatSayNothing) {
-  for (const float value : {kNaN, kInf, 0.0F, -1.0F}) {
-    SCOPED_TRACE("value " + std::to_string(value));
-    const auto blind = [&](LaserScan& scan) { scan.ranges.assign(scan.ranges.size(), value); };
-    expect_good(outcome(with_scans(
-        tour(1), [](std::size_t i) { return i % 5 == 2; }, blind)));
-    expect_good(outcome(with_scans(
-        tour(1), [](std::size_t i) { return i < 8; }, blind)));  // the first
-  }
+  for (const std::uint64_t seed : {1U, 2U, 3U})
+    for (const float value : {kNaN, kInf, 0.0F, -1.0F}) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", value " + std::to_string(value));
+      expect_good(outcome(with_scans(
+          tour(seed), [](std::size_t i) { return i % 5 == 2; },
+          [&](LaserScan& scan) { scan.ranges.assign(scan.ranges.size(), value); })));
+    }
+}
+
+/// Until the first scan that sees, the pose is that of the wheels, and with it where the map lies in its frame. From
+/// there on all is as good as ever.
+TEST(RobustBadInput, FirstScansThatSayNothing) {
+  constexpr std::size_t kBlind = 8;
+  const Trajectory truth = toured().truth;
+  for (const std::uint64_t seed : {1U, 2U, 3U})
+    for (const float value : {kNaN, kInf, 0.0F, -1.0F}) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", value " + std::to_string(value));
+      RobustMapper mapper(RobotModel(), {}, 1);
+      const slam_test::Outcome o =
+          slam_test::play(mapper,
+                          with_scans(
+                              tour(seed), [](std::size_t i) { return i < kBlind; },
+                              [&](LaserScan& scan) { scan.ranges.assign(scan.ranges.size(), value); }),
+                          slam_test::furnished_room(), truth);
+      EXPECT_GT(o.occupied, 300);
+      ASSERT_EQ(mapper.trajectory().size(), truth.size());
+      Trajectory from_there;
+      for (std::size_t i = kBlind; i < truth.size(); ++i)
+        from_there.push_back({truth[i].stamp, mapper.trajectory()[i].pose - mapper.trajectory()[kBlind].pose});
+      EXPECT_LT(slam_test::first_pose_rmse(from_there, Trajectory(truth.begin() + kBlind, truth.end())), 0.05);
+    }
 }
 
 /// For 2 s the heading is that of the wheels, and no worse; the place and the map are as good as ever, and so is the
@@ -73,7 +96,7 @@ TEST(RobustBadInput, WhileBlindTheHeadingIsThatOfTheWheels) {
   constexpr std::size_t kTo = 80;
   const Trajectory truth = toured().truth;
   const auto turned = [](const TPose2D& from, const TPose2D& to) { return wrap_angle(to.phi - from.phi); };
-  for (const std::uint64_t seed : {1U, 3U, 4U, 6U}) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Ticks ticks = tour(seed);
     const auto wheels = [&](std::size_t i) { return ticks[i].odometry.front().pose; };
@@ -169,14 +192,15 @@ TEST(RobustBadInput, AStampFarAhead) {
 }
 
 TEST(RobustBadInput, GapsOfSeconds) {
-  for (const std::size_t from : {40u, 110u, 180u}) {
-    SCOPED_TRACE("from tick " + std::to_string(from));
-    Ticks ticks = tour(3);
-    ASSERT_GT(ticks.size(), from + 30);
-    ticks.erase(ticks.begin() + static_cast<std::ptrdiff_t>(from),
-                ticks.begin() + static_cast<std::ptrdiff_t>(from) + 30);
-    expect_good(outcome(ticks));
-  }
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U})
+    for (const std::size_t from : {40u, 110u, 180u}) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", from tick " + std::to_string(from));
+      Ticks ticks = tour(seed);
+      ASSERT_GT(ticks.size(), from + 30);
+      ticks.erase(ticks.begin() + static_cast<std::ptrdiff_t>(from),
+                  ticks.begin() + static_cast<std::ptrdiff_t>(from) + 30);
+      expect_good(outcome(ticks));
+    }
 }
 
 TEST(RobustBadInput, DoubledScansCountOnce) {
