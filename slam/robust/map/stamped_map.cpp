@@ -9,6 +9,7 @@
 #include "base/planar.h"
 #include "slam/robust/map/crisp_walls.h"
 #include "slam/robust/map/gone_things.h"
+#include "slam/robust/map/wall_phase.h"
 
 namespace rubble::slam {
 
@@ -23,32 +24,8 @@ constexpr Work kWorkPerBeam = 60;   ///< of drawing a scan
 constexpr Work kDrawnCellsPerWork = 4;  ///< of the window that is drawn in
 constexpr Work kWorkPerLook = 20;
 constexpr double kLevelGround = deg_to_rad(2.0);
-constexpr double kAcross = 0.99;           ///< of a normal's part along an axis, of walls across it: within 8 deg
-constexpr double kLeastShift = 0.1;        ///< cells
-constexpr double kLeastWallPoints = 20.0;  ///< tell where walls lie
-constexpr double kSure = 6.0;              ///< n R^2 of Rayleigh's test: by chance in one of 400
-
-/// Where in a cell walls lie, in cells: the circular mean of their places.
-class WallPhase {
- public:
-  void add(double place) {
-    cosine_ += std::cos(2.0 * kPi * place);
-    sine_ += std::sin(2.0 * kPi * place);
-    count_ += 1.0;
-  }
-  /// How far a raster that begins at `origin` must move for walls to lie in the middle of cells, -0.5..0.5; zero where
-  /// they may lie anywhere (Rayleigh's test).
-  double shift(double origin) const {
-    if (count_ < kLeastWallPoints || cosine_ * cosine_ + sine_ * sine_ < kSure * count_) return 0.0;
-    const double off = std::atan2(sine_, cosine_) / (2.0 * kPi) - 0.5 - origin;
-    return off - std::round(off);
-  }
-
- private:
-  double cosine_ = 0.0;
-  double sine_ = 0.0;
-  double count_ = 0.0;
-};
+constexpr double kAcross = 0.99;     ///< of a normal's part along an axis, of walls across it: within 8 deg
+constexpr double kLeastShift = 0.1;  ///< cells
 
 /// A laser that leans, or stands higher than usual, looks over what is low.
 bool is_level(const ScanTilt& tilt) {
@@ -82,8 +59,10 @@ void StampedMap::lay_raster(const KeyFrames& frames) {
       const double nx = c * static_cast<double>(point.nx) - s * static_cast<double>(point.ny);
       const double ny = s * static_cast<double>(point.nx) + c * static_cast<double>(point.ny);
       const mrpt::math::TPoint2D p = to_map({static_cast<double>(point.x), static_cast<double>(point.y)});
-      if (std::abs(nx) > kAcross) across_x.add(p.x / map_.frame().resolution);
-      if (std::abs(ny) > kAcross) across_y.add(p.y / map_.frame().resolution);
+      const double x = p.x / map_.frame().resolution;
+      const double y = p.y / map_.frame().resolution;
+      if (std::abs(nx) > kAcross) across_x.add(x, y, nx > 0.0);
+      if (std::abs(ny) > kAcross) across_y.add(y, x, ny > 0.0);
     }
   }
   const double cell = map_.frame().resolution;
