@@ -36,6 +36,7 @@ void bind(Binder& b, RobustConfig& c) {
   b.number("max_range_m", c.scan.max_range, 0.0, 1000.0);
   bind_misses(b, c.misses);
   b.number("floor_margin_m", c.scan.floor_margin, 0.0, 1.0);
+  b.number("ramp_margin_m", c.scan.ramp_margin, 0.0, 1.0);
   b.boolean("deskew", c.deskew);
   b.boolean("use_tilt", c.use_tilt);
   b.number("map_distance_m", c.map_distance, 0.0, 2.0);

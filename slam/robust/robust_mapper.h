@@ -22,7 +22,8 @@ namespace rubble::slam {
 struct RobustConfig {
   RobustConfig() {
     scan.floor_margin = 0.08;
-    loop.blur = 0.0;  // by the reach of the scanner, see suited_to()
+    scan.ramp_margin = 0.22;  // a ramp of 10 deg on a pallet ends 0.21 m above its foot
+    loop.blur = 0.0;          // by the reach of the scanner, see suited_to()
   }
 
   int map_cells = 800;                 ///< cells a side at the start; the map grows when needed

@@ -10,6 +10,10 @@ using mrpt::math::TPose2D;
 
 namespace {
 
+constexpr double kFallsLittle = 0.026;       ///< of a beam, a metre: by 1.5 deg, as servos leave it ...
+constexpr double kFallsAsOnRamps = 0.052;    ///< ... and by 3 deg
+constexpr double kMostOfHeight = 2.0 / 3.0;  ///< of a laser near the ground, so that what it sees ahead stays
+
 /// Where the base is as the beams of a sweep leave, linear in time. The heading goes on beam by beam as a product of
 /// rotations, which spares a sine and a cosine a beam; after 10,000 beams it is off by less than 1e-11 rad.
 class SweepingBase {
@@ -82,6 +86,8 @@ LevelScan::LevelScan(const mrpt::math::TPose3D& T_base_laser, const LevelScanCon
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 2; ++j) m_[i][j] = R(i, j);
   }
+  config_.ramp_margin =
+      std::max(config_.floor_margin, std::min(config_.ramp_margin, kMostOfHeight * std::max(0.0, laser_height_)));
   upside_down_ = m_[0][0] * m_[1][1] - m_[0][1] * m_[1][0] < 0.0;
 }
 
@@ -97,6 +103,12 @@ void LevelScan::aim_beams(const robot::LaserScan& scan) {
     const double s = std::sin(scan.bearing(beam));
     directions_[beam] = {m_[0][0] * c + m_[0][1] * s, m_[1][0] * c + m_[1][1] * s};
   }
+}
+
+/// How high the floor may seem to a beam that climbs so much a metre.
+double LevelScan::margin_of(double climb) const {
+  const double share = std::clamp((-climb - kFallsLittle) / (kFallsAsOnRamps - kFallsLittle), 0.0, 1.0);
+  return config_.floor_margin + share * (config_.ramp_margin - config_.floor_margin);
 }
 
 ScanPoints LevelScan::points(const robot::LaserScan& scan, const SweepMotion* motion, const ScanTilt* tilt) {
@@ -126,9 +138,15 @@ ScanPoints LevelScan::points(const robot::LaserScan& scan, const SweepMotion* mo
     double length = hit ? range : std::max(0.0, cap - config_.miss_margin);
     Direction d = directions_[beam];
     if (tilt != nullptr) {
-      if (!hit) length = std::min(length, config_.miss_climb / std::abs(plane.climb(d.x, d.y)));
-      if (laser_height_ + length * plane.climb(d.x, d.y) < config_.floor_margin) {  // the floor
-        if (hit) points.floor_beams.push_back(static_cast<int>(beam));
+      const double climb = plane.climb(d.x, d.y);
+      const double margin = margin_of(climb);
+      if (!hit) {
+        const double above = laser_height_ - margin;  // what lies lower may be the floor
+        length =
+            std::min(length, std::min(config_.miss_climb, climb < 0.0 ? above : config_.miss_climb) / std::abs(climb));
+        if (length <= 0.0) continue;
+      } else if (laser_height_ + length * climb < margin) {  // the floor
+        points.floor_beams.push_back(static_cast<int>(beam));
         continue;
       }
       d = {plane.x(d.x, d.y), plane.y(d.y)};

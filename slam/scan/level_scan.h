@@ -19,7 +19,10 @@ struct LevelScanConfig {
   double max_range = 0.0;     ///< returns beyond are no hits [m]; 0: the scanner's own limit
   double miss_margin = 0.1;   ///< [m]
   double miss_climb = 0.15;   ///< a miss says nothing of where its beam is higher or lower than the laser by more [m]
-  double floor_margin = 0.0;  ///< of a tilted scan, returns lower than this above the floor are no hits [m]
+  double floor_margin = 0.0;  ///< of a tilted scan, returns lower than this above the floor are no hits [m] ...
+  /// ... and this [m] for beams that look down as from a ramp, which may end on the next one; two thirds of the laser's
+  /// height at most. In between, for beams that fall by 1.5 to 3 deg, it grows from one to the other.
+  double ramp_margin = 0.0;
 };
 
 /// Motion of the base during a sweep, relative to the base at the scan's reference time.
@@ -53,6 +56,7 @@ class LevelScan {
     double y;
   };
   void aim_beams(const robot::LaserScan& scan);
+  double margin_of(double climb) const;
 
   LevelScanConfig config_;
   mrpt::math::TPoint2D p_base_laser_;

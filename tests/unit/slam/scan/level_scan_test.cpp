@@ -96,6 +96,44 @@ TEST(LevelScan, ReturnsFromTheFloorAreToldByTheirBeams) {
   EXPECT_TRUE(level_scan.points(four_beams({1.0f, kMiss, 1.0f}), nullptr, &tilt).floor_beams.empty());
 }
 
+LevelScanConfig for_ramps() {
+  LevelScanConfig config;
+  config.floor_margin = 0.08;
+  config.ramp_margin = 0.22;
+  return config;
+}
+
+/// Nose down on a ramp the scan plane cuts the next one, which rises, in the same line from wherever it looks: no
+/// second view tells that line from a wall. It lies no higher than that ramp ends.
+TEST(LevelScan, WhereItLooksDownARampTheNextOneIsFloor) {
+  LevelScan level_scan(TPose3D(0.0, 0.0, 0.35, 0.0, 0.0, 0.0), for_ramps());
+  ScanTilt tilt;
+  tilt.pitch = deg_to_rad(-10.0);
+  constexpr double kAlong = 1.01;  // from the foot of both ramps, 0.178 m above it
+  const ScanPoints ramp = level_scan.points(four_beams({1.0f, static_cast<float>(kAlong), 1.0f}), nullptr, &tilt);
+  EXPECT_EQ(ramp.hits.size(), 2u);
+  EXPECT_EQ(ramp.floor_beams, std::vector<int>{1});
+  const ScanPoints wall = level_scan.points(four_beams({1.0f, 0.7f, 1.0f}), nullptr, &tilt);
+  EXPECT_EQ(wall.hits.size(), 3u);
+}
+
+/// A plane that the servos keep level within a degree or two is not parallel to a ramp: what it sees far off stays.
+TEST(LevelScan, AHandOfDegreesIsNoRamp) {
+  LevelScan level_scan(TPose3D(0.0, 0.0, 0.35, 0.0, 0.0, 0.0), for_ramps());
+  ScanTilt tilt;
+  tilt.pitch = deg_to_rad(-3.0);
+  EXPECT_EQ(level_scan.points(four_beams({1.0f, 3.5f, 1.0f}), nullptr, &tilt).hits.size(), 3u) << "0.17 m high";
+}
+
+TEST(LevelScan, ALaserNearTheGroundStillSeesWhatIsLevel) {
+  LevelScan level_scan(TPose3D(0.0, 0.0, 0.15, 0.0, 0.0, 0.0), for_ramps());
+  ScanTilt tilt;
+  tilt.pitch = deg_to_rad(-6.0);
+  const ScanPoints points = level_scan.points(four_beams({kUnmeasured, 0.4f}), nullptr, &tilt);
+  EXPECT_EQ(points.hits.size(), 1u);
+  EXPECT_TRUE(points.floor_beams.empty());
+}
+
 TEST(LevelScan, RangeCapTurnsFarReturnsIntoNothing) {
   LevelScanConfig config;
   config.max_range = 2.0;
