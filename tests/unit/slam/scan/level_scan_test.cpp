@@ -117,12 +117,17 @@ TEST(LevelScan, WhereItLooksDownARampTheNextOneIsFloor) {
   EXPECT_EQ(wall.hits.size(), 3u);
 }
 
-/// A plane that the servos keep level within a degree or two is not parallel to a ramp: what it sees far off stays.
-TEST(LevelScan, AHandOfDegreesIsNoRamp) {
+/// What servos leave is no ramp: a scanner of long reach keeps what it sees far off, though it is as low there.
+TEST(LevelScan, WhatIsLevelWithinADegreeSeesWallsFarOff) {
   LevelScan level_scan(TPose3D(0.0, 0.0, 0.35, 0.0, 0.0, 0.0), for_ramps());
+  robot::LaserScan scan = four_beams({1.0f, 8.0f, 1.0f});
+  scan.range_max = 30.0;
   ScanTilt tilt;
-  tilt.pitch = deg_to_rad(-3.0);
-  EXPECT_EQ(level_scan.points(four_beams({1.0f, 3.5f, 1.0f}), nullptr, &tilt).hits.size(), 3u) << "0.17 m high";
+  tilt.pitch = deg_to_rad(-1.4);
+  EXPECT_EQ(level_scan.points(scan, nullptr, &tilt).hits.size(), 3u) << "0.155 m above the floor";
+  tilt.pitch = deg_to_rad(-3.2);
+  scan.ranges[1] = 3.5f;
+  EXPECT_EQ(level_scan.points(scan, nullptr, &tilt).floor_beams, std::vector<int>{1}) << "0.155 m likewise";
 }
 
 TEST(LevelScan, ALaserNearTheGroundStillSeesWhatIsLevel) {
