@@ -24,6 +24,10 @@ class OdometryTrack {
   mrpt::math::TPose2D pose_at(Stamp stamp) const;
   /// Motion of the base from `from` to `to`, in the base frame at `from`: T_from_to.
   mrpt::math::TPose2D between(Stamp from, Stamp to) const;
+  /// Calls `use(step, time)` with each step from one report to the next that lies between `from` and `to`, or reaches
+  /// in there: T_before_after, and how long it took [s].
+  template <class Use>
+  void for_steps(Stamp from, Stamp to, const Use& use) const;
   /// Whether nothing was reported about the motion at `stamp`: it lies in a gap much longer than the odometry's usual
   /// interval (and kShortestGap), and not next to a report.
   bool silent_at(Stamp stamp) const;
@@ -39,5 +43,14 @@ class OdometryTrack {
   std::deque<robot::Odometry> track_;
   double usual_interval_ = 0.0;  ///< [s]
 };
+
+template <class Use>
+void OdometryTrack::for_steps(Stamp from, Stamp to, const Use& use) const {
+  for (std::size_t i = track_.size(); i > 1 && from < track_[i - 1].stamp; --i) {
+    const robot::Odometry& before = track_[i - 2];
+    const robot::Odometry& after = track_[i - 1];
+    if (before.stamp < to) use(after.pose - before.pose, after.stamp - before.stamp);
+  }
+}
 
 }  // namespace rubble::slam

@@ -16,9 +16,10 @@ namespace {
 
 constexpr double kFastest = 10.0;          ///< odometry that goes faster has jumped [m/s]
 constexpr double kFastestTurn = 20.0;      ///< or turns faster [rad/s]
-constexpr double kFastestSweep = 3.0;      ///< the same within one sweep [m/s]
+constexpr double kFastestSweep = 3.0;      ///< the same within one sweep, or from one report to the next [m/s]
 constexpr double kFastestSweepTurn = 6.0;  ///< [rad/s]
 constexpr double kLeastJump = 0.5;         ///< below, a coarse clock may be to blame [m, rad]
+constexpr int kOften = 3;                  ///< reports from scan to scan
 constexpr double kForgiving = 0.6;         ///< what is left of the doubt after each scan that agrees with the odometry
 constexpr double kNoDoubt = 0.05;
 constexpr double kLongestCarry = 0.5;  ///< motion is taken to go on for so long [s]
@@ -29,6 +30,11 @@ constexpr double kHolds = 0.5;         ///< ... which they do where the robot tu
 bool finite(const robot::Odometry& o) {
   return std::isfinite(o.pose.x) && std::isfinite(o.pose.y) && std::isfinite(o.pose.phi) && std::isfinite(o.v) &&
          std::isfinite(o.w);
+}
+
+bool outruns_robots(const TPose2D& motion, double time) {
+  return length(motion.x, motion.y) > 0.05 + kFastestSweep * time ||
+         std::abs(wrap_angle(motion.phi)) > 0.05 + kFastestSweepTurn * time;
 }
 
 }  // namespace
@@ -56,7 +62,9 @@ ExpectedMotion MotionExpectation::expect(const LaserScan& scan) {
   // Stamps that come bunched do not mean that the scanner was faster than it is.
   const double time = std::max(motion.time, scan_period_);
   const bool jumped = (path > kLeastJump && path > kFastest * time) ||
-                      (turn > kLeastJump && turn > kFastestTurn * time) || jumps_within(scan);
+                      (turn > kLeastJump && turn > kFastestTurn * time) || jumps_within(scan) ||
+                      jumps_between_reports(reference) || (jumped_ && outruns_robots(motion.T_last_now, time));
+  jumped_ = jumped;
   const bool silent_then = silent_at_scan_ ? *silent_at_scan_ : odometry_.silent_at(*last_scan_);
   const bool silent = T_odom_scan_ && (silent_then || odometry_.silent_at(reference));
   jumps_ += jumped ? 1 : 0;
@@ -76,9 +84,20 @@ bool MotionExpectation::jumps_within(const LaserScan& scan) const {
   const std::optional<SweepMotion> sweep = sweep_motion(odometry_, scan);
   if (!sweep) return false;
   const double time = std::abs(scan.beam_stamp(scan.ranges.size() - 1) - scan.stamp);
-  const TPose2D motion = sweep->T_ref_last - sweep->T_ref_first;
-  return length(motion.x, motion.y) > 0.05 + kFastestSweep * time ||
-         std::abs(wrap_angle(motion.phi)) > 0.05 + kFastestSweepTurn * time;
+  return outruns_robots(sweep->T_ref_last - sweep->T_ref_first, time);
+}
+
+/// Where reports come much more often than scans, the step from one to the next tells sooner than that between scans,
+/// which a robot of 10 m/s could have made. A jump that a scan lies in is one before and after it.
+bool MotionExpectation::jumps_between_reports(Stamp reference) const {
+  int steps = 0;
+  bool jumps = false;
+  odometry_.for_steps(*last_scan_, reference, [&](const TPose2D& step, double time) {
+    const bool far = length(step.x, step.y) > kLeastJump || std::abs(wrap_angle(step.phi)) > kLeastJump;
+    jumps = jumps || (far && outruns_robots(step, time));
+    ++steps;
+  });
+  return jumps && steps >= kOften;
 }
 
 /// The share of the wheels' way that is none. Nothing but the scan tells how far a robot came, and between two bare

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
+#include "base/planar.h"
 #include "slam/robust/robust_mapper.h"
 #include "tests/support/slam_key_frames.h"
 
@@ -56,6 +58,41 @@ TEST(MotionExpectation, WheelsThatTurnInVainRollInVain) {
     EXPECT_NEAR(motion.in_vain, share < 0.5 ? 1.0 - share : 0.0, 1e-9);
     EXPECT_NEAR(motion.believed().x, share < 0.5 ? share * kCurve.x : kCurve.x, 1e-9);
     EXPECT_NEAR(motion.believed().phi, kCurve.phi, 1e-9) << "the heading is the scan's to tell";
+  }
+}
+
+/// Reports 50 times a second that jump once; a scan ten times a second sweeps for 66 ms. Wherever in a sweep or between
+/// two the jump lies, no step of a scan believes a part of it.
+TEST(MotionExpectation, AJumpIsNotBelievedWhereverInAScanItLies) {
+  const TPose2D jump(0.75, -0.45, 1.2);
+  for (int jumps_at = 40; jumps_at < 50; ++jumps_at) {
+    SCOPED_TRACE("report " + std::to_string(jumps_at));
+    MotionExpectation motion(kPeriod);
+    robot::LaserScan scan;
+    scan.beam_period = 0.066 / 682;
+    scan.ranges.assign(682, 1.0F);
+    TPose2D T_odom_base;
+    int not_told = 0;
+    for (int tick = 0; tick < 100; ++tick) {
+      const Stamp now = Stamp{0} + 0.02 * tick;
+      T_odom_base = T_odom_base + (tick == jumps_at ? jump : TPose2D(0.004, 0.0, 0.01));
+      robot::Odometry report;
+      report.stamp = now;
+      report.pose = T_odom_base;
+      motion.hear(report, now);
+      if (tick < 10 || tick % 5 != 0) continue;
+      scan.stamp = now - 0.09;
+      const ExpectedMotion expected = motion.expect(scan);
+      not_told += tick > 10 && !expected.told ? 1 : 0;
+      if (tick > 10 && expected.told) {
+        EXPECT_LT(length(expected.T_last_now.x, expected.T_last_now.y), 0.1) << "tick " << tick;
+        EXPECT_LT(std::abs(expected.T_last_now.phi), 0.2) << "tick " << tick;
+      }
+      motion.found({0.02, 0.0, 0.05}, kPeriod, false);
+      motion.scan_taken(scan.middle());
+    }
+    EXPECT_GE(not_told, 1);
+    EXPECT_LE(not_told, 2);
   }
 }
 
