@@ -127,7 +127,8 @@ class Mapper {
   /// CSV: a line for each place that a search for loops found, with the tests it stood; empty from mappers that look
   /// for none. `name`: what it calls the key frames.
   virtual std::string loop_table(const StampName& /*name*/) const { return {}; }
-  /// The same, line by line. Empty from mappers that look for none, or do not tell.
+  /// The same, line by line. Empty from mappers that look for none or do not tell, and while it is not known where in
+  /// the map they lie.
   virtual std::vector<FoundLoop> found_loops() const { return {}; }
   /// The map with all that a mapper needs to go on with it in another run, as bytes (slam/robust/map/saved_map.h).
   /// Empty: this kind cannot, or nothing is mapped.

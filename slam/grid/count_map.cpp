@@ -110,18 +110,19 @@ void CountMap::assign(const GridFrame& frame, const std::vector<std::uint16_t>& 
     throw std::invalid_argument("CountMap: two planes of the frame's size are needed");
   for (std::size_t cell = 0; cell < seen.size(); ++cell)
     if (occupied[cell] > seen[cell]) throw std::invalid_argument("CountMap: occupied more often than seen");
-  frame_ = frame;
-  tiles_.clear(frame.width, frame.height);
+  CountTiles tiles(frame.width, frame.height);
   for (int y = 0; y < frame.height; ++y)
     for (int x = 0; x < frame.width; ++x) {
       const std::size_t from = frame.index({x, y});
       if (seen[from] == 0) continue;
-      Tile& tile = tiles_.at({x, y});
+      Tile& tile = tiles.at({x, y});
       const std::size_t cell = CountTiles::place({x, y});
       tile.seen[cell] = seen[from];
       tile.occupied[cell] = occupied[from];
       rate(tile, cell);
     }
+  frame_ = frame;
+  tiles_ = std::move(tiles);
   ++version_;
 }
 

@@ -8,7 +8,7 @@ namespace rubble::slam {
 
 namespace {
 
-/// Fill 2 MB, a page of the largest size.
+/// Tiles that fill a page of 2 MB.
 constexpr std::size_t kSlab = (std::size_t{1} << 21U) / sizeof(CountTiles::Tile);
 const CountTiles::Tile kNothing{};
 
@@ -56,6 +56,17 @@ CountTiles::Tile& CountTiles::open(std::size_t number) {
   tiles_[number] = tile;
   shown_[number] = tile;
   return *tile;
+}
+
+void CountTiles::swap(CountTiles& other) noexcept {
+  std::swap(across_, other.across_);
+  std::swap(down_, other.down_);
+  std::swap(tiles_, other.tiles_);
+  std::swap(shown_, other.shown_);
+  std::swap(slabs_, other.slabs_);
+  std::swap(slab_, other.slab_);
+  std::swap(left_, other.left_);
+  std::swap(given_back_, other.given_back_);
 }
 
 void CountTiles::take_slab(std::size_t tiles) {

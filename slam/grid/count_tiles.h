@@ -32,8 +32,11 @@ class CountTiles {
   CountTiles(int width, int height);
   CountTiles(const CountTiles& other);
   CountTiles& operator=(const CountTiles& other);
-  CountTiles(CountTiles&&) = default;
-  CountTiles& operator=(CountTiles&&) = default;
+  CountTiles(CountTiles&& other) noexcept { swap(other); }
+  CountTiles& operator=(CountTiles&& other) noexcept {
+    swap(other);
+    return *this;
+  }
   ~CountTiles() = default;
 
   /// Tiles in a row of them.
@@ -62,6 +65,7 @@ class CountTiles {
   }
   Tile& open(std::size_t number);
   void take_slab(std::size_t tiles);
+  void swap(CountTiles& other) noexcept;
   void lay_out(int width, int height);
 
   int across_ = 0;

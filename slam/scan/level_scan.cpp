@@ -10,8 +10,8 @@ using mrpt::math::TPose2D;
 
 namespace {
 
-constexpr double kFallsLittle = 0.026;       ///< of a beam, a metre: by 1.5 deg, as servos leave it ...
-constexpr double kFallsAsOnRamps = 0.052;    ///< ... and by 3 deg
+const double kFallsLittle = std::sin(deg_to_rad(1.5));     ///< of a beam, as servos leave it [m/m] ...
+const double kFallsAsOnRamps = std::sin(deg_to_rad(3.0));  ///< ... and as on ramps
 constexpr double kMostOfHeight = 2.0 / 3.0;  ///< of a laser near the ground, so that what it sees ahead stays
 
 /// Where the base is as the beams of a sweep leave, linear in time. The heading goes on beam by beam as a product of

@@ -18,7 +18,8 @@ struct LevelScanConfig {
   bool carve_misses = false;  ///< beams without a return free cells up to `miss_margin` before the range limit
   double max_range = 0.0;     ///< returns beyond are no hits [m]; 0: the scanner's own limit
   double miss_margin = 0.1;   ///< [m]
-  double miss_climb = 0.15;   ///< a miss says nothing of where its beam is higher or lower than the laser by more [m]
+  double miss_climb = 0.15;  ///< a miss says nothing of where its beam is higher or lower than the laser by more, or in
+                             ///< the margins below [m]
   double floor_margin = 0.0;  ///< of a tilted scan, returns lower than this above the floor are no hits [m] ...
   /// ... and this [m] for beams that look down as from a ramp, which may end on the next one; two thirds of the laser's
   /// height at most. In between, for beams that fall by 1.5 to 3 deg, it grows from one to the other.

@@ -14,6 +14,7 @@ namespace {
 constexpr double kLeastWallHits = 20.0;  ///< tell where walls lie
 constexpr double kSure = 6.0;            ///< n R^2 of Rayleigh's test: by chance in one of 400
 constexpr double kStrip = 4.0;           ///< cells along a wall in which both faces are looked for
+constexpr double kLeastShare = 0.05;     ///< of the hits, on boards: a single one does not tell where the others stand
 constexpr float kThickest = 1.0F;        ///< cells between the faces of a wall that counts by its middle
 
 }  // namespace
@@ -45,7 +46,9 @@ WallPhase::Mean WallPhase::middles() const {
     return std::tie(a.strip, a.across) < std::tie(b.strip, b.across);
   };
   std::vector<Hit> hits = hits_;
-  std::sort(hits.begin(), hits.end(), before);
+  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
+    return std::tie(a.strip, a.across, a.up) < std::tie(b.strip, b.across, b.up);
+  });
   Mean out;
   std::array<Face, 2> near;  // down and up: of the hits from `low` to `high`
   std::size_t low = 0;
@@ -66,7 +69,8 @@ WallPhase::Mean WallPhase::middles() const {
 
 double WallPhase::shift(double origin) const {
   const Mean middle = middles();
-  const Mean& walls = middle.sure() ? middle : faces_;
+  const bool boards = middle.sure() && middle.count() >= kLeastShare * static_cast<double>(hits_.size());
+  const Mean& walls = boards ? middle : faces_;
   if (!walls.sure()) return 0.0;
   const double off = walls.place() - 0.5 - origin;
   return off - std::round(off);

@@ -25,6 +25,7 @@ class WallPhase {
     void add(double place);
     bool sure() const;
     double place() const;
+    double count() const { return count_; }
 
    private:
     double cosine_ = 0.0;

@@ -61,10 +61,11 @@ ExpectedMotion MotionExpectation::expect(const LaserScan& scan) {
   const double turn = std::abs(wrap_angle(motion.T_last_now.phi));
   // Stamps that come bunched do not mean that the scanner was faster than it is.
   const double time = std::max(motion.time, scan_period_);
-  const bool jumped = (path > kLeastJump && path > kFastest * time) ||
-                      (turn > kLeastJump && turn > kFastestTurn * time) || jumps_within(scan) ||
-                      jumps_between_reports(reference) || (jumped_ && outruns_robots(motion.T_last_now, time));
-  jumped_ = jumped;
+  const bool leapt = (path > kLeastJump && path > kFastest * time) ||
+                     (turn > kLeastJump && turn > kFastestTurn * time) || jumps_within(scan) ||
+                     jumps_between_reports(reference);
+  const bool jumped = leapt || (leapt_ && outruns_robots(motion.T_last_now, time));
+  leapt_ = leapt;
   const bool silent_then = silent_at_scan_ ? *silent_at_scan_ : odometry_.silent_at(*last_scan_);
   const bool silent = T_odom_scan_ && (silent_then || odometry_.silent_at(reference));
   jumps_ += jumped ? 1 : 0;

@@ -64,7 +64,7 @@ class MotionExpectation {
   std::optional<bool> silent_at_scan_;
   mrpt::math::TPose2D last_step_;  ///< between the last two scans, as matched
   double last_step_time_ = 0.0;    ///< [s]
-  bool jumped_ = false;            ///< at the last scan, which may lie in the middle of it
+  bool leapt_ = false;             ///< the odometry, at the last scan, which may lie in the middle of that
   double doubt_ = 0.0;             ///< of the odometry, by what the last scans said of it
   double turn_now_ = 0.0;          ///< told since the last scan [rad]
   // Of the turns of the last moments, fading, by their rates, so that it does not matter how often a scanner scans.

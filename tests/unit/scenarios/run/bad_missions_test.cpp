@@ -239,7 +239,9 @@ class AFaultThatPasses : public ::testing::Test {
       ASSERT_TRUE(frozen.came());
       expect_good_mission();
       EXPECT_LT(frozen.error_after(mission_), 0.15);
-      pushed_on += frozen.figures(arena_, mission_.truth).contact_s < 2.0 ? 0 : 1;
+      const double contact_s = frozen.figures(arena_, mission_.truth).contact_s;
+      pushed_on += contact_s < 2.0 ? 0 : 1;
+      EXPECT_LT(contact_s, 7.0) << "longer than the spell";
     }
     // The place lags by up to 0.3 m meanwhile, and a robot that touches something has no wheels to tell it.
     EXPECT_LE(pushed_on, 1) << "of " << kSeeds;

@@ -159,7 +159,7 @@ ScanPoints room_scan(const TPose2D& T_world_base, std::uint64_t seed) {
   return level_scan.points(slam_test::scan_at(slam_test::furnished_room(), T_world_base, model, Stamp{0}, 0.01, noise));
 }
 
-TEST(CountMap, RatioIsEquationOneAndThePlaneRoundsIt) {
+TEST(CountMap, RatioIsEquationOneAndIsRoundedTo255ths) {
   CountMap map(400, 400, 0.05);
   for (std::uint64_t k = 0; k < 40; ++k) map.stamp(TPose2D(0.01 * static_cast<double>(k), 0.0, 0.0), room_scan({}, k));
   int seen = 0;

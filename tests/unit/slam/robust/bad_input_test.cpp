@@ -86,6 +86,9 @@ TEST(RobustBadInput, FirstScansThatSayNothing) {
       for (std::size_t i = kBlind; i < truth.size(); ++i)
         from_there.push_back({truth[i].stamp, mapper.trajectory()[i].pose - mapper.trajectory()[kBlind].pose});
       EXPECT_LT(slam_test::first_pose_rmse(from_there, Trajectory(truth.begin() + kBlind, truth.end())), 0.05);
+      for (std::size_t i = kBlind; i < truth.size(); ++i)
+        EXPECT_LT(std::abs(wrap_angle(from_there[i - kBlind].pose.phi - (truth[i].pose - truth[kBlind].pose).phi)),
+                  deg_to_rad(3.0));
     }
 }
 

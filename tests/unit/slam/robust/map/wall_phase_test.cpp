@@ -47,6 +47,13 @@ TEST(WallPhase, WithoutThinWallsFacesTell) {
   EXPECT_NEAR(off_middle(phase, 0.7), 0.0, 0.02);
 }
 
+TEST(WallPhase, OneBoardAmongLongWallsDoesNotTellWhereTheyStand) {
+  WallPhase phase;
+  for (int k = 0; k < 20; ++k) add_face(phase, 40.0 * k + 0.7, k % 2 == 0, 500);
+  add_board(phase, 777.2, 0.2, 100);
+  EXPECT_NEAR(off_middle(phase, 0.7), 0.0, 0.02);
+}
+
 TEST(WallPhase, WallsThatMayLieAnywhereMoveNothing) {
   WallPhase phase;
   for (int i = 0; i < 1000; ++i) phase.add(0.01 * i, 0.0, true);

@@ -96,6 +96,20 @@ TEST(MotionExpectation, AJumpIsNotBelievedWhereverInAScanItLies) {
   }
 }
 
+/// One jump does not make those that follow it suspect, however fast the robot is.
+TEST(MotionExpectation, AfterAJumpAFastRobotIsBelievedAgain) {
+  Drive drive;
+  int not_told = 0;
+  for (int scan = 0; scan < 60; ++scan) {
+    const TPose2D step(scan == 20 ? 3.4 : 0.4, 0.0, 0.0);
+    const bool told = drive.hear(step).told;
+    not_told += scan > 1 && !told ? 1 : 0;
+    drive.found({0.4, 0.0, 0.0});
+  }
+  EXPECT_GE(not_told, 1);
+  EXPECT_LE(not_told, 2);
+}
+
 /// A robot that frees itself drives straight on, and gets there: most of such ways are true.
 TEST(MotionExpectation, WheelsThatRollStraightAreBelievedWhateverTheyTurnedBefore) {
   Drive drive;
