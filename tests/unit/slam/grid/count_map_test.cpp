@@ -303,6 +303,16 @@ void take_back_to(const CountMap& earlier, CountMap& map) {
   map.assign(frame, std::move(seen), std::move(occupied));
 }
 
+void expect_the_same_cells(const CountMap& one, const CountMap& other) {
+  ASSERT_EQ(one.frame(), other.frame());
+  for (int y = 0; y < one.frame().height; ++y)
+    for (int x = 0; x < one.frame().width; ++x) {
+      ASSERT_EQ(one.seen({x, y}), other.seen({x, y})) << x << ' ' << y;
+      ASSERT_EQ(one.occupied({x, y}), other.occupied({x, y})) << x << ' ' << y;
+    }
+  EXPECT_EQ(slam_test::p_occ_of(one), slam_test::p_occ_of(other));
+}
+
 TEST(CountMap, RestampingIsTakingBackAndStampingAnew) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -323,25 +333,9 @@ TEST(CountMap, RestampingIsTakingBackAndStampingAnew) {
       other.stamp(before, scan);
       other.restamp(before, after, scan);
     }
-    ASSERT_EQ(one.frame(), other.frame());
     ASSERT_EQ(one.dropped_hits(), other.dropped_hits());
-    for (int y = 0; y < one.frame().height; ++y)
-      for (int x = 0; x < one.frame().width; ++x) {
-        ASSERT_EQ(one.seen({x, y}), other.seen({x, y})) << x << ' ' << y;
-        ASSERT_EQ(one.occupied({x, y}), other.occupied({x, y})) << x << ' ' << y;
-      }
-    ASSERT_EQ(slam_test::p_occ_of(one), slam_test::p_occ_of(other));
+    expect_the_same_cells(one, other);
   }
-}
-
-void expect_the_same_cells(const CountMap& one, const CountMap& other) {
-  ASSERT_EQ(one.frame(), other.frame());
-  for (int y = 0; y < one.frame().height; ++y)
-    for (int x = 0; x < one.frame().width; ++x) {
-      ASSERT_EQ(one.seen({x, y}), other.seen({x, y})) << x << ' ' << y;
-      ASSERT_EQ(one.occupied({x, y}), other.occupied({x, y})) << x << ' ' << y;
-    }
-  EXPECT_EQ(slam_test::p_occ_of(one), slam_test::p_occ_of(other));
 }
 
 TEST(CountMap, StretchesOfARowHoldWhatItsCellsCounted) {
