@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace rubble {
 
@@ -11,29 +10,6 @@ namespace rubble {
 /// pages of that size. Throws std::bad_alloc.
 void* allocate_large(std::size_t bytes);
 void free_large(void* memory, std::size_t bytes) noexcept;
-
-/// Allocator of such memory.
-template <class T>
-struct LargePages {
-  using value_type = T;
-
-  LargePages() = default;
-  template <class U>
-  LargePages(const LargePages<U>&) noexcept {}  // NOLINT: allocators convert
-  T* allocate(std::size_t count) { return static_cast<T*>(allocate_large(count * sizeof(T))); }
-  void deallocate(T* memory, std::size_t count) noexcept { free_large(memory, count * sizeof(T)); }
-  template <class U>
-  bool operator==(const LargePages<U>&) const noexcept {
-    return true;
-  }
-  template <class U>
-  bool operator!=(const LargePages<U>&) const noexcept {
-    return false;
-  }
-};
-
-template <class T>
-using LargeVector = std::vector<T, LargePages<T>>;
 
 /// Such memory for work that is done again and again on more and less of it. It stays when less is asked for: what is
 /// given back and taken anew must be touched first each time.

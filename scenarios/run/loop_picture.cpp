@@ -12,6 +12,7 @@
 #include "base/image/legend.h"
 #include "base/planar.h"
 #include "base/round_step.h"
+#include "scoring/maps/known_box.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -43,20 +44,10 @@ const std::array<EndStyle, 7> kEnds{{{"unfit", {190, 190, 190}, "unfit"},
 
 /// The part of the map that is known.
 GridFrame known_frame(const slam::CountMap& map) {
-  const GridFrame& whole = map.frame();
-  Cell low{whole.width, whole.height}, high{-1, -1};
-  for (int y = 0; y < whole.height; ++y)
-    map.for_seen(y, 0, whole.width, [&](int x, int count, const std::uint16_t* seen, const std::uint16_t*) {
-      for (int i = 0; i < count; ++i) {
-        if (seen[i] == 0) continue;
-        low = {std::min(low.x, x + i), std::min(low.y, y)};
-        high = {std::max(high.x, x + i), std::max(high.y, y)};
-      }
-    });
-  if (high.x < low.x) low = high = {0, 0};
-  const int rim = static_cast<int>(std::lround(kLoopRim / whole.resolution));
-  return {high.x - low.x + 1 + 2 * rim, high.y - low.y + 1 + 2 * rim, whole.resolution,
-          whole.x0 + (low.x - rim) * whole.resolution, whole.y0 + (low.y - rim) * whole.resolution};
+  const double cell = map.frame().resolution;
+  const scoring::KnownBox box = scoring::known_box(map.frame(), kLoopRim, [&](Cell c) { return map.seen(c) > 0; });
+  return {static_cast<int>(std::lround((box.x1 - box.x0) / cell)),
+          static_cast<int>(std::lround((box.y1 - box.y0) / cell)), cell, box.x0, box.y0};
 }
 
 /// The map from above, north up.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/planar.h"
 #include "slam/mapper.h"
 #include "tests/support/slam_world.h"
 
@@ -28,6 +29,21 @@ inline double distance_to(const World& world, const TPoint2D& p) {
     nearest = std::min(nearest, std::hypot(dx, dy));
   }
   return nearest;
+}
+
+/// Counts the occupied cells, and those that lie off the walls of a world in which the map lies at `T_world_map`.
+inline void judge_map(const slam::CountMap& map, const World& world, const TPose2D& T_world_map, Outcome& out) {
+  const OccupancyGrid grid = map.classify();
+  const PlanarTransform to_world(T_world_map);
+  out.occupied = 0;
+  int off = 0;
+  for (int y = 0; y < grid.height(); ++y)
+    for (int x = 0; x < grid.width(); ++x) {
+      if (grid[{x, y}] != Occupancy::Occupied) continue;
+      ++out.occupied;
+      off += distance_to(world, to_world(grid.centre({x, y}))) > 0.10 ? 1 : 0;
+    }
+  out.outside = out.occupied > 0 ? static_cast<double>(off) / out.occupied : 1.0;
 }
 
 /// Plays `ticks` to their end.
@@ -54,15 +70,7 @@ inline Outcome play(slam::Mapper& mapper, const std::vector<robot::Inputs>& tick
     const auto t = pose_at(truth, e.stamp);
     if (t) out.heading = std::max(out.heading, std::abs(wrap_angle(e.pose.phi - (*t - truth.front().pose).phi)));
   }
-  const OccupancyGrid grid = mapper.map().classify();
-  int off = 0;
-  for (int y = 0; y < grid.height(); ++y)
-    for (int x = 0; x < grid.width(); ++x) {
-      if (grid[{x, y}] != Occupancy::Occupied) continue;
-      ++out.occupied;
-      off += distance_to(world, grid.centre({x, y})) > 0.10 ? 1 : 0;
-    }
-  out.outside = out.occupied > 0 ? static_cast<double>(off) / out.occupied : 1.0;
+  judge_map(mapper.map(), world, {}, out);
   return out;
 }
 

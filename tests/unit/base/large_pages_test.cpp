@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <limits>
 #include <new>
-#include <numeric>
 #include <utility>
 
 #include "base/sanitized.h"
@@ -15,17 +14,18 @@
 namespace rubble {
 namespace {
 
-TEST(LargePages, AVectorGrowsOverTheSizeFromWhichPagesAreLargeAndKeepsWhatItHolds) {
-  LargeVector<std::uint16_t> numbers;
-  constexpr std::uint32_t kCount = 3'000'000;  // 6 MB
-  for (std::uint32_t i = 0; i < kCount; ++i) numbers.push_back(static_cast<std::uint16_t>(i * 7U));
-  for (std::uint32_t i = 0; i < kCount; ++i) ASSERT_EQ(numbers[i], static_cast<std::uint16_t>(i * 7U)) << i;
-  const LargeVector<std::uint16_t> copy = numbers;
-  numbers.assign(10, 3);
-  numbers.shrink_to_fit();
-  EXPECT_EQ(std::accumulate(numbers.begin(), numbers.end(), 0), 30);
-  EXPECT_EQ(copy.size(), kCount);
-  EXPECT_EQ(copy.back(), static_cast<std::uint16_t>((kCount - 1) * 7U));
+TEST(LargePages, ABufferHoldsWhatWasWrittenWhateverItsSize) {
+  for (const std::size_t bytes :
+       {std::size_t{10}, std::size_t{500'000}, std::size_t{600'000}, std::size_t{6'000'000}}) {
+    LargeBuffer buffer(bytes);
+    LargeBuffer other(bytes);
+    for (std::size_t i = 0; i < bytes; ++i) {
+      buffer.data()[i] = static_cast<std::uint8_t>(i * 7U);
+      other.data()[i] = 3;
+    }
+    for (std::size_t i = 0; i < bytes; ++i) ASSERT_EQ(buffer.data()[i], static_cast<std::uint8_t>(i * 7U)) << i;
+    EXPECT_EQ(std::count(other.data(), other.data() + bytes, 3), static_cast<std::ptrdiff_t>(bytes));
+  }
 }
 
 TEST(LargePages, LargeMemoryBeginsAtALargePage) {
