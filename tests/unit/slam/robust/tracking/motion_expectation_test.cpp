@@ -96,6 +96,33 @@ TEST(MotionExpectation, AJumpIsNotBelievedWhereverInAScanItLies) {
   }
 }
 
+/// Logs of rare scans have clocks that are coarse: true steps of the wheels look like 3 to 7 m/s and rad/s there, from
+/// one report to the next, several of them between two scans. A step of 20 m/s is none.
+TEST(MotionExpectation, StepsOfACoarseClockAreBelieved) {
+  for (const TPose2D& step : {TPose2D(0.8, 0.0, 0.0), TPose2D(0.05, 0.0, 1.06), TPose2D(2.5, 0.0, 0.0)}) {
+    SCOPED_TRACE(step.asString());
+    constexpr double kInterval = 0.125;
+    MotionExpectation motion(kPeriod);
+    robot::LaserScan scan;
+    TPose2D T_odom_base;
+    ExpectedMotion expected;
+    for (int report_no = 0; report_no <= 40; ++report_no) {
+      T_odom_base = T_odom_base + (report_no == 38 ? step : TPose2D(0.05, 0.0, 0.0));
+      robot::Odometry report;
+      report.stamp = Stamp{0} + kInterval * report_no;
+      report.pose = T_odom_base;
+      motion.hear(report, report.stamp);
+      if (report_no % 8 != 0) continue;
+      scan.stamp = report.stamp;
+      expected = motion.expect(scan);
+      motion.found(expected.T_last_now, 8 * kInterval, false);
+      motion.scan_taken(scan.middle());
+    }
+    EXPECT_EQ(expected.told, step.x < 1.0);
+    EXPECT_EQ(motion.jumps(), step.x < 1.0 ? 0U : 1U);
+  }
+}
+
 /// One jump does not make those that follow it suspect, however fast the robot is.
 TEST(MotionExpectation, AfterAJumpAFastRobotIsBelievedAgain) {
   Drive drive;
