@@ -3,18 +3,18 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <Eigen/Core>
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
+#include <utility>
 #include <vector>
 
+#include "slam/robust/graph/block_cholesky.h"
 #include "slam/robust/graph/pose_graph.h"
 #include "slam/robust/matching/work.h"
 
 namespace rubble::slam {
 
 /// Finds the nodes that fit the edges best: Gauss-Newton on a sparse Cholesky factorisation, loops under dynamic
-/// covariance scaling (Agarwal et al. 2013), which switches off what disagrees. Works on a copy, one step at a time, so
-/// that a large graph is solved in slices.
+/// covariance scaling (Agarwal et al. 2013), which switches off what disagrees. Works on a copy, bit by bit, so that a
+/// large graph is solved in slices; the bits are the same however it is cut.
 class GraphSolver {
  public:
   enum class Plan {
@@ -26,8 +26,8 @@ class GraphSolver {
   /// Takes the graph as it is now.
   void start(const PoseGraph& graph, Plan plan, double scaling);
   bool running() const { return running_; }
-  /// One Gauss-Newton step; returns whether more are needed.
-  bool step(Work& work);
+  /// Goes on until the budget is spent; returns whether more is needed.
+  bool advance(Work& budget);
   /// The nodes so far; those of the start of the solve.
   const std::vector<mrpt::math::TPose2D>& nodes() const { return graph_.nodes; }
   /// Covariance of the last node, in the frame of node 0, as of the last step.
@@ -42,26 +42,28 @@ class GraphSolver {
     double scaling;
     int steps;
   };
-  /// Part of the Jacobian: three rows of a node.
-  struct Derivative {
-    int node;
-    Eigen::Matrix3d by_node;  ///< of what is asked for
-  };
+  /// Of a Gauss-Newton step.
+  enum class Stage { LayOut, Edges, Factorise };
+  void lay_out(Work& budget);
+  void begin_step(Work& budget);
+  void add_edge(std::size_t edge);
+  void add_walls(const GraphWalls& walls);
+  void move_nodes(Work& budget);
   void next_phase();
-  void lay_out();
   double off_walls(const GraphWalls& walls) const;
-  void add_to_diagonal(int node, const Eigen::Matrix3d& block);
-  Eigen::Matrix3d covariance_of(const std::vector<Derivative>& derivatives, Work* work) const;
+  bool solved() const { return laid_out_ && factor_.factorised(); }
 
   PoseGraph graph_;
   std::vector<Phase> phases_;
   std::size_t phase_ = 0;
   int steps_left_ = 0;
   bool running_ = false;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor_;
-  Eigen::SparseMatrix<double> H_;      ///< lower triangle; its pattern stays from step to step
-  std::vector<Eigen::Index> between_;  ///< of each edge: first of its block's values off the diagonal
-  bool analysed_ = false;
+  Stage stage_ = Stage::LayOut;
+  bool laid_out_ = false;
+  std::size_t next_edge_ = 0;
+  BlockCholesky factor_;                       ///< of the information matrix; its pattern stays from step to step
+  std::vector<BlockCholesky::Place> between_;  ///< of each edge
+  Eigen::VectorXd gradient_;                   ///< the right side: -J^T W r
 };
 
 }  // namespace rubble::slam

@@ -488,10 +488,7 @@ void LoopCloser::consider_solving() {
 }
 
 bool LoopCloser::solve(Work& budget) {
-  Work used = 0;
-  const bool more = solver_.step(used);
-  budget -= used;
-  if (more) return false;
+  if (solver_.advance(budget)) return false;
   take_solution(budget);
   return true;
 }

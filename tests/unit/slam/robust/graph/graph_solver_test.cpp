@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "base/angle.h"
@@ -65,9 +66,8 @@ Ring ring(int count, double noise, bool loops, std::uint64_t seed) {
 std::vector<TPose2D> solved(const PoseGraph& graph, GraphSolver::Plan plan, double scaling = 8.0) {
   GraphSolver solver;
   solver.start(graph, plan, scaling);
-  Work work = 0;
-  while (solver.step(work)) {
-  }
+  Work budget = std::numeric_limits<Work>::max();
+  solver.advance(budget);
   return solver.nodes();
 }
 
@@ -147,13 +147,38 @@ TEST(GraphSolver, ExactMeasurementsGiveTheTruth) {
   EXPECT_LT(farthest(solved(r.graph, GraphSolver::Plan::Final), r.truth), 1e-4);
 }
 
+TEST(GraphSolver, SlicesGiveTheSameBitsAndKeepToTheirBudget) {
+  const Ring r = ring(300, 0.02, true, 7);
+  const auto at_once = solved(r.graph, GraphSolver::Plan::Gradually);
+  EXPECT_GT(farthest(at_once, r.graph.nodes), 0.02) << "nothing was to be solved";
+  for (const Work slice : {Work{1}, Work{5'000}, Work{100'000}}) {
+    SCOPED_TRACE("slices of " + std::to_string(slice));
+    GraphSolver solver;
+    solver.start(r.graph, GraphSolver::Plan::Gradually, 8.0);
+    Work budget = slice;
+    ASSERT_TRUE(solver.advance(budget)) << "the layout goes first, in one";
+    int slices = 1;
+    for (bool more = true; more; ++slices) {
+      budget = slice;
+      more = solver.advance(budget);
+      EXPECT_GT(budget, -130'000) << "solving by the factor and the next step's beginning are the largest pieces";
+    }
+    EXPECT_GT(slices, 10);
+    const auto in_slices = solver.nodes();
+    for (std::size_t k = 0; k < at_once.size(); ++k) {
+      EXPECT_EQ(in_slices[k].x, at_once[k].x);
+      EXPECT_EQ(in_slices[k].y, at_once[k].y);
+      EXPECT_EQ(in_slices[k].phi, at_once[k].phi);
+    }
+  }
+}
+
 TEST(GraphSolver, CovarianceIsTheInverseOfTheDenseHessian) {
   const Ring r = ring(8, 0.01, false, 3);
   GraphSolver solver;
   solver.start(r.graph, GraphSolver::Plan::Final, 8.0);
-  Work work = 0;
-  while (solver.step(work)) {
-  }
+  Work budget = std::numeric_limits<Work>::max();
+  solver.advance(budget);
   const Eigen::VectorXd x = as_vector(solver.nodes());
   const Eigen::MatrixXd J = numerical_jacobian(r.graph, x).rightCols(x.size() - 3);
   const Eigen::MatrixXd covariance = (J.transpose() * J).inverse();
@@ -217,9 +242,8 @@ TEST(GraphSolver, AFalseLoopAmongTrueOnesIsToldByTheOthers) {
     r.graph.edges.push_back(wrong);
     GraphSolver solver;
     solver.start(r.graph, GraphSolver::Plan::Final, 8.0);
-    Work work = 0;
-    while (solver.step(work)) {
-    }
+    Work budget = std::numeric_limits<Work>::max();
+    solver.advance(budget);
     EXPECT_GT(solver.disagreement_without(wrong).head<2>().norm(), 0.8);
     for (const GraphEdge& edge : r.graph.edges)
       if (edge.loop && edge.to != wrong.to) {
@@ -236,9 +260,8 @@ TEST(GraphSolver, DisagreementWithoutAnEdgeIsThatOfTheGraphWithoutIt) {
     wrong.T_from_to.x += 0.3;
     GraphSolver solver;
     solver.start(r.graph, GraphSolver::Plan::Final, 8.0);
-    Work work = 0;
-    while (solver.step(work)) {
-    }
+    Work budget = std::numeric_limits<Work>::max();
+    solver.advance(budget);
     const Eigen::Vector3d told = solver.disagreement_without(wrong);
     PoseGraph rest = r.graph;
     rest.edges.pop_back();
@@ -261,9 +284,8 @@ TEST(GraphSolver, AnEdgeThatAloneTiesItsEndsHasNothingToDisagreeWith) {
   graph.edges.push_back(edge);
   GraphSolver solver;
   solver.start(graph, GraphSolver::Plan::Final, 8.0);
-  Work work = 0;
-  while (solver.step(work)) {
-  }
+  Work budget = std::numeric_limits<Work>::max();
+  solver.advance(budget);
   EXPECT_FALSE(std::isfinite(solver.disagreement_without(edge)[0]) &&
                std::abs(solver.disagreement_without(edge)[0]) < 1e3);
 }
@@ -285,8 +307,8 @@ TEST(GraphSolver, ASingleNodeIsSolved) {
   GraphSolver solver;
   solver.start(graph, GraphSolver::Plan::Final, 8.0);
   EXPECT_FALSE(solver.running());
-  Work work = 0;
-  EXPECT_FALSE(solver.step(work));
+  Work budget = 1;
+  EXPECT_FALSE(solver.advance(budget));
   EXPECT_EQ(solver.covariance_of_last(), Eigen::Matrix3d::Zero());
 }
 
@@ -294,9 +316,10 @@ TEST(GraphSolver, WorkGrowsWithTheGraph) {
   const auto work_of = [](int count) {
     GraphSolver solver;
     solver.start(ring(count, 0.01, true, 1).graph, GraphSolver::Plan::Refine, 8.0);
-    Work work = 0;
-    solver.step(work);
-    return work;
+    constexpr Work kPlenty = 1'000'000'000;
+    Work budget = kPlenty;
+    solver.advance(budget);
+    return kPlenty - budget;
   };
   EXPECT_GT(work_of(40), 3 * work_of(10));
 }

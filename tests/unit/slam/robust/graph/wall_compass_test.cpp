@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "base/angle.h"
@@ -179,9 +180,8 @@ TEST(GraphSolver, WallsStraightenAChainThatBends) {
   }
   GraphSolver solver;
   solver.start(graph, GraphSolver::Plan::Final, 8.0);
-  Work work = 0;
-  while (solver.step(work)) {
-  }
+  Work budget = std::numeric_limits<Work>::max();
+  solver.advance(budget);
   EXPECT_GT(rad_to_deg(graph.nodes[kNodes - 11].phi), 4.5);
   EXPECT_LT(std::abs(rad_to_deg(solver.nodes()[kNodes - 11].phi)), 0.7);
   const auto cost = [&](const std::vector<TPose2D>& nodes) {
@@ -231,9 +231,8 @@ PoseGraph two_buildings(int nodes, double skew) {
 double last_heading(const PoseGraph& graph) {
   GraphSolver solver;
   solver.start(graph, GraphSolver::Plan::Final, 8.0);
-  Work work = 0;
-  while (solver.step(work)) {
-  }
+  Work budget = std::numeric_limits<Work>::max();
+  solver.advance(budget);
   return solver.nodes().back().phi;
 }
 
