@@ -28,8 +28,8 @@ namespace {
 constexpr double kEdgeDistance = 0.008;     ///< least error between key frames [m]
 constexpr double kEdgeAngle = 0.003;        ///< [rad]
 constexpr Work kLeastBudget = 300'000;      ///< for work put off, each scan
-constexpr Work kUsualShare = 8;             ///< the usual budget is such a part of the largest ...
-constexpr Work kHurry = 4;                  ///< ... and grows by itself with so many tasks that wait
+constexpr Work kUsualShare = 16;             ///< the usual budget is such a part of the largest ...
+constexpr Work kHurry = 2;                  ///< ... and grows by itself with so many tasks that wait
 constexpr double kLevel = deg_to_rad(5.0);  ///< of the scan plane
 constexpr double kSteady = 0.01;            ///< it tilted by no more than this [rad] ...
 constexpr double kSteadyFor = 0.1;          ///< ... in so long [s]
