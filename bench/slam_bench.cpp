@@ -2,9 +2,15 @@
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/poses/CPose2D.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "base/angle.h"
+#include "base/rng.h"
 #include "slam/mrpt/module/match_target.h"
 #include "slam/paper/paper_mapper.h"
 #include "slam/paper/particle_filter.h"
+#include "slam/robust/graph/graph_solver.h"
 #include "slam/scan/level_scan.h"
 #include "slam/scan/scan_matcher.h"
 #include "slam/scan/surface.h"
@@ -141,5 +147,58 @@ void BM_MapperStep(benchmark::State& state) {
   state.counters["mapped"] = static_cast<double>(mapper.counts().mapped);
 }
 BENCHMARK(BM_MapperStep)->Unit(benchmark::kMicrosecond);
+
+/// A drive round and round, each key frame tied to the one of the round before.
+PoseGraph rounds(int nodes) {
+  constexpr int kRound = 150;
+  Rng noise(1, "rounds");
+  PoseGraph graph;
+  const auto truth = [](int k) {
+    const double bearing = 2.0 * kPi * k / kRound;
+    return TPose2D(6.0 * std::sin(bearing), 6.0 - 6.0 * std::cos(bearing), bearing);
+  };
+  const auto measure = [&](int from, int to, bool loop) {
+    GraphEdge edge;
+    edge.from = from;
+    edge.to = to;
+    const double dx = noise.gaussian(0.01);
+    edge.T_from_to = (truth(to) - truth(from)) + TPose2D(dx, noise.gaussian(0.01), noise.gaussian(0.003));
+    edge.information = Eigen::Vector3d(1e4, 1e4, 1e5).asDiagonal();
+    edge.loop = loop;
+    graph.edges.push_back(edge);
+  };
+  graph.nodes.push_back(truth(0));
+  for (int k = 1; k < nodes; ++k) {
+    measure(k - 1, k, false);
+    graph.nodes.push_back(graph.nodes.back() + graph.edges.back().T_from_to);
+    if (k >= kRound) measure(k - kRound, k, true);
+  }
+  return graph;
+}
+
+/// A solution in slices of half a million units of work: a unit should take about a nanosecond, and no slice much more.
+void BM_SolveGraph(benchmark::State& state) {
+  const PoseGraph graph = rounds(static_cast<int>(state.range(0)));
+  constexpr Work kSlice = 500'000;
+  Work work = 0;
+  Work largest = 0;
+  int slices = 0;
+  for (auto _ : state) {
+    GraphSolver solver;
+    solver.start(graph, GraphSolver::Plan::Refine, 8.0);
+    for (bool more = true; more; ++slices) {
+      Work budget = kSlice;
+      more = solver.advance(budget);
+      work += kSlice - budget;
+      largest = std::max(largest, kSlice - budget);
+    }
+    benchmark::DoNotOptimize(solver.nodes());
+  }
+  const auto solutions = static_cast<double>(state.iterations());
+  state.counters["work_ms"] = static_cast<double>(work) * 1e-6 / solutions;
+  state.counters["slices"] = slices / solutions;
+  state.counters["largest_slice_work_ms"] = static_cast<double>(largest) * 1e-6;
+}
+BENCHMARK(BM_SolveGraph)->Arg(500)->Arg(2000)->Arg(4000)->Arg(10000)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -83,8 +83,8 @@ class TimedMapper {
     if (program_) out["is_program"] = true;
     if (program_ && program_->peak_mb()) out["program_peak_mb"] = *program_->peak_mb();
     for (const slam::MapperFigure& figure : mapper_.figures())
-      for (const char* key :
-           {slam::MapperFigure::kLoopsClosed, slam::MapperFigure::kLoopsRemoved, slam::MapperFigure::kMostWork})
+      for (const char* key : {slam::MapperFigure::kLoopsClosed, slam::MapperFigure::kLoopsRemoved,
+                              slam::MapperFigure::kMapDoubted, slam::MapperFigure::kMostWork})
         if (figure.key == key) out[key] = figure.value;
     return out;
   }
@@ -240,6 +240,7 @@ void take(BenchmarkResult& result, const ChildAnswer& answer) {
   result.loops_closed = number(slam::MapperFigure::kLoopsClosed);
   result.loops_removed = number(slam::MapperFigure::kLoopsRemoved);
   result.loops_false = number("loops_false");
+  result.doubted = number(slam::MapperFigure::kMapDoubted);
   result.scans = said["scans"].get<std::uint64_t>();
   result.scans_per_second = number("scans_per_second");
   result.usual_ms = number("usual_ms");
@@ -291,6 +292,7 @@ BenchmarkResult summary(const std::vector<BenchmarkResult>& runs) {
   all.loops_closed = sum(&BenchmarkResult::loops_closed);
   all.loops_removed = sum(&BenchmarkResult::loops_removed);
   all.loops_false = sum(&BenchmarkResult::loops_false);
+  all.doubted = sum(&BenchmarkResult::doubted);
   return all;
 }
 

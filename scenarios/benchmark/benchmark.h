@@ -33,6 +33,7 @@ struct BenchmarkResult {
   std::optional<double> loops_closed;
   std::optional<double> loops_removed;
   std::optional<double> loops_false;      ///< that hold and the truth contradicts (scoring::false_relations)
+  std::optional<double> doubted;          ///< runs whose map the mapper itself does not believe
   std::optional<bool> goal_met;           ///< all of the case's; nothing: it has none, or nothing was measured
   std::vector<std::string> goals_missed;  ///< columns whose goal is not
 };

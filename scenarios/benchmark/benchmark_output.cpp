@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text/html.h"
+#include "scenarios/run/run.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -66,7 +67,7 @@ Table results_table(const Benchmark& benchmark) {
   Table table;
   table.head = {"case",      "measure",   "mapper",    "runs",         "error m",  "worst m", "as known at the scan m",
                 "deg",       "goals",     "goal met",  "scans/s",      "usual ms", "99 % ms", "worst ms",
-                "most work", "finish ms", "memory MB", "loops closed", "removed",  "false"};
+                "most work", "finish ms", "memory MB", "loops closed", "removed",  "false",   "doubted"};
   for (const BenchmarkRow& row : benchmark.rows)
     for (const BenchmarkResult& r : row.results) {
       const bool ran = r.missing.empty() && r.failure.empty();
@@ -92,7 +93,8 @@ Table results_table(const Benchmark& benchmark) {
                             timed(r.peak_mb, "%.0f"),
                             optional_number(r.loops_closed, "%.0f"),
                             optional_number(r.loops_removed, "%.0f"),
-                            optional_number(r.loops_false, "%.0f")});
+                            optional_number(r.loops_false, "%.0f"),
+                            optional_number(r.doubted, "%.0f")});
     }
   return table;
 }
@@ -163,8 +165,8 @@ std::string as_html(const Table& table) {
 constexpr const char* kNote =
     "Error: relations are mean errors between pairs of moments (Kuemmerle et al. 2009), aligned is the RMS error of "
     "the positions after the best rigid alignment with the reference that came with the log or the arena. Of several "
-    "runs errors are medians, times, work and memory the largest, loops the sums, and scans/s is all scans by all CPU "
-    "time; false loops lead more than 0.3 m or 0.2 rad from where the reference has the robot. Times are CPU time of "
+    "runs errors are medians, times, work and memory the largest, loops and doubts the sums, and scans/s is all scans by all CPU "
+    "time; a map is doubted by its own mapper; false loops lead more than 0.3 m or 0.2 rad from where the reference has the robot. Times are CPU time of "
     "the mapper alone, of this machine; the most work of a scan is in millions of units that the mapper counts, the "
     "same on every machine.";
 
@@ -215,6 +217,7 @@ std::string to_json(const Benchmark& benchmark) {
       set(j, "loops_closed", r.loops_closed);
       set(j, "loops_removed", r.loops_removed);
       set(j, "loops_false", r.loops_false);
+      set(j, "doubted", r.doubted);
       c["results"].push_back(j);
     }
     c["published"] = ordered_json::array();
@@ -222,8 +225,9 @@ std::string to_json(const Benchmark& benchmark) {
       c["published"].push_back({{"by", p.by}, {"source", p.source}, {"error_m", p.value}});
     cases.push_back(c);
   }
-  return ordered_json{{"name", benchmark.name}, {"about", benchmark.about}, {"cases", cases}}.dump(
-             2, ' ', true, ordered_json::error_handler_t::replace) +
+  return ordered_json{
+             {"name", benchmark.name}, {"about", benchmark.about}, {"commit", versions().commit}, {"cases", cases}}
+             .dump(2, ' ', true, ordered_json::error_handler_t::replace) +
          "\n";
 }
 
@@ -245,7 +249,8 @@ std::string to_html(const Benchmark& benchmark) {
 std::string to_markdown(const Benchmark& benchmark) {
   std::string text = "# Benchmark of the mappers: " + benchmark.name + "\n\n";
   if (!benchmark.about.empty()) text += benchmark.about + "\n\n";
-  text += std::string(kNote) + " Made by `rubble benchmark --markdown`.\n\n" + as_markdown(results_table(benchmark));
+  text += std::string(kNote) + " Made by `rubble benchmark --markdown` of commit " + versions().commit + ".\n\n" +
+          as_markdown(results_table(benchmark));
   const Table published = published_table(benchmark);
   if (!published.rows.empty()) text += "\n## Published\n\n" + as_markdown(published);
   return text;

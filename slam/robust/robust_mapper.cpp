@@ -28,7 +28,7 @@ namespace {
 constexpr double kEdgeDistance = 0.008;     ///< least error between key frames [m]
 constexpr double kEdgeAngle = 0.003;        ///< [rad]
 constexpr Work kLeastBudget = 300'000;      ///< for work put off, each scan
-constexpr Work kUsualShare = 16;             ///< the usual budget is such a part of the largest ...
+constexpr Work kUsualShare = 16;            ///< the usual budget is such a part of the largest ...
 constexpr Work kHurry = 2;                  ///< ... and grows by itself with so many tasks that wait
 constexpr double kLevel = deg_to_rad(5.0);  ///< of the scan plane
 constexpr double kSteady = 0.01;            ///< it tilted by no more than this [rad] ...
@@ -634,7 +634,7 @@ std::vector<MapperFigure> RobustMapper::figures() const {
           {"frames_astray", static_cast<double>(loops.astray)},
           {"frames_doubled", static_cast<double>(impl_->doubled_)},
           {"scans_unfit", static_cast<double>(impl_->unfit_)},
-          {"map_doubted", impl_->is_map_doubted() ? 1.0 : 0.0},
+          {MapperFigure::kMapDoubted, impl_->is_map_doubted() ? 1.0 : 0.0},
           {"graph_solved", static_cast<double>(loops.solved)},
           {"last_work_ms", static_cast<double>(impl_->last_work_) * 1e-6},
           {"work_ms", static_cast<double>(impl_->all_work_) * 1e-6},

@@ -33,7 +33,7 @@ for page in b.html b.md; do
   tr '\n' ' ' <$page | grep -qE 'worst ms( \| |</th><th>)most work( \| |</th><th>)finish ms' || fail "$page does not tell the work beside the times"
 done
 for page in b.html b.md; do
-  grep -qF 'loops the sums, and scans/s is all scans by all CPU time' $page || fail "$page does not tell what figures of several runs are"
+  grep -qF 'loops and doubts the sums, and scans/s is all scans by all CPU time' $page || fail "$page does not tell what figures of several runs are"
 done
 grep -q '&lt;by&gt;' b.html || fail "the page does not escape what the list says"
 grep -qE '(src|href)=' b.html && fail "the page refers to other files"
@@ -71,6 +71,9 @@ YAML
 json_holds relations.json "[c['results'][0]['goals_missed'] for c in j['cases']] == [[], ['deg'], ['deg']]"
 json_holds relations.json "[c['results'][0]['goal_met'] for c in j['cases']] == [True, False, False] and j['cases'][0]['goal_deg'] == 2"
 json_holds relations.json "abs(j['cases'][1]['results'][0]['error_deg'] - 2.865) < 0.6"
+commit=$("$rubble" --version | python3 -c 'import json, sys; print(json.load(sys.stdin)["commit"])')
+grep -q "of commit $commit\\." relations.md || fail "the page does not name the commit $commit: $(cat relations.md)"
+json_holds relations.json "j['commit'] == '$commit' and j['cases'][0]['results'][0]['doubted'] == 0"
 grep -q '| 0.2, 2 deg | no: deg |' relations.md || fail "the goal of the heading is not told: $(cat relations.md)"
 grep -q '| 2 deg | no: deg |' relations.md || fail "a goal of the heading alone is not told: $(cat relations.md)"
 printf 'mappers: [{kind: robust}]\ncases: [{name: a, log: x, goal_deg: 1}]\n' >heading.yaml
@@ -92,7 +95,7 @@ json_holds seeds.json "[c['results'][0]['runs'] for c in j['cases']] == [3, 3, 1
 json_holds seeds.json "(lambda e, r: (r['error_m'], r['worst_m']) == (e[1], e[2]))(sorted(c['results'][0]['error_m'] for c in j['cases'][2:5]), j['cases'][0]['results'][0])"
 json_holds seeds.json "j['cases'][0]['results'][0]['scans'] == sum(c['results'][0]['scans'] for c in j['cases'][2:5])"
 json_holds seeds.json "j['cases'][0]['results'][0]['most_work_ms'] == max(c['results'][0]['most_work_ms'] for c in j['cases'][2:5])"
-json_holds seeds.json "all(abs(three[k] - sum(r[k] for r in one)) < 1e-9 for three, one in [(j['cases'][0]['results'][0], [c['results'][0] for c in j['cases'][2:5]])] for k in ('loops_closed', 'loops_removed', 'loops_false'))"
+json_holds seeds.json "all(abs(three[k] - sum(r[k] for r in one)) < 1e-9 for three, one in [(j['cases'][0]['results'][0], [c['results'][0] for c in j['cases'][2:5]])] for k in ('loops_closed', 'loops_removed', 'loops_false', 'doubted'))"
 json_holds seeds.json "[c['results'][0]['goal_met'] for c in j['cases'][:3]] == [True, False, None]"
 json_holds seeds.json "j['cases'][1]['results'][0]['goals_missed'] == ['worst', 'scans/s', 'worst ms']"
 json_holds seeds.json "j['cases'][0]['results'][0]['goals_missed'] == [] and j['cases'][1]['scans_per_s_goal'] == 1e9"
