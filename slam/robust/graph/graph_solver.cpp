@@ -22,7 +22,7 @@ constexpr double kConverged = 1e-3;   ///< largest change of a step [m; a third 
 constexpr Work kWorkPerEdge = 100;
 constexpr Work kWorkPerNode = 60;
 constexpr Work kWorkPerBlock = 12;     ///< of the factor, to solve by it
-constexpr Work kWorkOfOrdering = 250;  ///< per edge
+constexpr Work kWorkOfOrdering = 400;  ///< per edge
 
 /// Share of its information that a loop keeps: (min(1, 2 phi / (phi + chi2)))^2, Agarwal et al. 2013, eq. (15).
 double share(const GraphEdge& edge, const Eigen::Vector3d& r, double scaling) {
