@@ -10,9 +10,14 @@ namespace {
 
 constexpr std::uint16_t kUnknown = 0;
 constexpr std::uint16_t kMiss = std::numeric_limits<std::uint16_t>::max();
+constexpr double kLeastStep = 1e-6;       ///< between two beams [rad]
 constexpr float kFinestQuantum = 0.002F;  ///< [m]: scanners measure to millimetres, and cells are centimetres
 
 }  // namespace
+
+bool has_directions(double angle_min, double angle_step) {
+  return std::abs(angle_min) <= kMostAngle && angle_step > kLeastStep && angle_step <= kMostAngle;
+}
 
 PackedScan packed(const robot::LaserScan& scan, const std::optional<SweepMotion>& motion,
                   const std::optional<ScanTilt>& tilt) {

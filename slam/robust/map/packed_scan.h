@@ -9,6 +9,13 @@
 
 namespace rubble::slam {
 
+/// Angles may have been summed up over turns; beyond this they are damage [rad].
+constexpr double kMostAngle = 1e6;
+
+/// Whether the beams of a scan point somewhere. What is mapped and what a map's file may hold is the same: else a map
+/// could not be read back.
+bool has_directions(double angle_min, double angle_step);
+
 /// A scan kept for later stamping: two bytes a beam, with how robot and plane moved and leant.
 struct PackedScan {
   double angle_min = 0.0;   ///< [rad]

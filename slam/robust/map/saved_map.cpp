@@ -33,7 +33,6 @@ constexpr double kLongestPath = 1e9;                      ///< [m]
 constexpr double kFarthestMount = 1e3;                    ///< of the laser on its robot [m]
 constexpr double kFarthestPoint = 2.0 * kFarthestReturn;  ///< of a scan, seen from the robot [m]
 constexpr double kMostNormal = 1.01;                      ///< parts of a unit vector
-constexpr double kMostAngle = 1e6;                        ///< angles may have been summed up over turns [rad]
 constexpr double kMostCertain = 1e18;                     ///< entries of covariances and informations
 constexpr double kRounding = 1e-6;                        ///< of the largest entry
 
@@ -196,7 +195,7 @@ PackedScan take_scan(ByteReader& in) {
   PackedScan scan;
   scan.angle_min = take_angle(in);
   scan.angle_step = take_angle(in);
-  if (!(scan.angle_step > 1e-6)) throw BadPayload("a scan without an angle between its beams");
+  if (!has_directions(scan.angle_min, scan.angle_step)) throw BadPayload("a scan without an angle between its beams");
   scan.range_min = take_range(in);
   scan.range_max = take_range(in);
   scan.quantum = take_range(in);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string>
 
 #include "slam/robust/robust_mapper.h"
 #include "tests/support/slam_outcome.h"
@@ -169,6 +170,23 @@ TEST(RobustBadInput, NumbersThatAreNone) {
       tour(1), [](std::size_t i) { return i % 4 == 1; }, [&](LaserScan& scan) { scan.angle_step = nan; })));
   expect_good(outcome(with_scans(
       tour(1), [](std::size_t i) { return i % 4 == 1; }, [&](LaserScan& scan) { scan.angle_min = nan; })));
+}
+
+/// What is mapped can be read back: the bounds of a map's file are those of the scans.
+TEST(RobustBadInput, AnglesThatNoScannerHas) {
+  const std::vector<std::function<void(LaserScan&)>> wrongs{
+      [](LaserScan& scan) { scan.angle_min = 1e7; }, [](LaserScan& scan) { scan.angle_min = -2e6; },
+      [](LaserScan& scan) { scan.angle_step = 1e7; }, [](LaserScan& scan) { scan.angle_step = 1e-7; },
+      [](LaserScan& scan) { scan.angle_step = 0.0; }};
+  for (std::size_t k = 0; k < wrongs.size(); ++k) {
+    SCOPED_TRACE("kind " + std::to_string(k));
+    const Ticks ticks = with_scans(
+        tour(1), [](std::size_t i) { return i % 4 == 1; }, wrongs[k]);
+    RobustMapper mapper(RobotModel(), {}, 1);
+    expect_good(slam_test::play(mapper, ticks, slam_test::furnished_room(), toured().truth));
+    EXPECT_EQ(mapper.counts().out_of_order, (ticks.size() + 2) / 4);
+    EXPECT_NO_THROW(decode_map(mapper.saved_map(), "map"));
+  }
 }
 
 /// Measurements out of order are left out; those that follow in order are used again.
