@@ -55,7 +55,7 @@ Eigen::Matrix3d lever(const TPose2D& from, const TPose2D& to) {
 }
 
 bool usable(const LaserScan& scan) {
-  return has_directions(scan.angle_min, scan.angle_step) && std::isfinite(scan.beam_period);
+  return has_directions(scan.angle_min, scan.angle_step, scan.ranges.size()) && std::isfinite(scan.beam_period);
 }
 
 }  // namespace

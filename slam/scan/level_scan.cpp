@@ -123,8 +123,8 @@ ScanPoints LevelScan::points(const robot::LaserScan& scan, const SweepMotion* mo
   const double cap = config_.max_range > 0.0 ? std::min(config_.max_range, limit) : limit;
   const bool carve = config_.carve_misses && (known || config_.max_range > 0.0);
   // Beams beyond one full turn would see the same directions twice.
-  const std::size_t turn = static_cast<std::size_t>(2.0 * kPi / scan.angle_step + 1e-6);
-  const std::size_t beams = std::min(scan.ranges.size(), turn);
+  const double turn = 2.0 * kPi / scan.angle_step + 1e-6;  // infinite for a single beam that tells no step
+  const auto beams = static_cast<std::size_t>(std::min(static_cast<double>(scan.ranges.size()), turn));
   points.hits.reserve(beams);
   points.rays.reserve(beams);
 

@@ -15,8 +15,9 @@ constexpr float kFinestQuantum = 0.002F;  ///< [m]: scanners measure to millimet
 
 }  // namespace
 
-bool has_directions(double angle_min, double angle_step) {
-  return std::abs(angle_min) <= kMostAngle && angle_step > kLeastStep && angle_step <= kMostAngle;
+bool has_directions(double angle_min, double angle_step, std::size_t beams) {
+  const bool apart = angle_step > kLeastStep || (beams < 2 && angle_step >= 0.0);
+  return std::abs(angle_min) <= kMostAngle && apart && angle_step <= kMostAngle;
 }
 
 PackedScan packed(const robot::LaserScan& scan, const std::optional<SweepMotion>& motion,

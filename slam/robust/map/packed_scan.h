@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -13,8 +14,8 @@ namespace rubble::slam {
 constexpr double kMostAngle = 1e6;
 
 /// Whether the beams of a scan point somewhere. What is mapped and what a map's file may hold is the same: else a map
-/// could not be read back.
-bool has_directions(double angle_min, double angle_step);
+/// could not be read back. Of a single beam no angle to the next one need be told.
+bool has_directions(double angle_min, double angle_step, std::size_t beams);
 
 /// A scan kept for later stamping: two bytes a beam, with how robot and plane moved and leant.
 struct PackedScan {

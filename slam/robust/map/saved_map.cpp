@@ -195,7 +195,6 @@ PackedScan take_scan(ByteReader& in) {
   PackedScan scan;
   scan.angle_min = take_angle(in);
   scan.angle_step = take_angle(in);
-  if (!has_directions(scan.angle_min, scan.angle_step)) throw BadPayload("a scan without an angle between its beams");
   scan.range_min = take_range(in);
   scan.range_max = take_range(in);
   scan.quantum = take_range(in);
@@ -211,6 +210,8 @@ PackedScan take_scan(ByteReader& in) {
       *value = take_angle(in);
   }
   scan.ranges.resize(in.count(1));
+  if (!has_directions(scan.angle_min, scan.angle_step, scan.ranges.size()))
+    throw BadPayload("a scan without an angle between its beams");
   std::int64_t last = 0;
   for (std::uint16_t& range : scan.ranges) {
     last = wrapped_sum(last, in.svarint());
@@ -268,7 +269,7 @@ SavedMap map_of(std::string_view payload) {
   const std::size_t edges = in.count(99);
   for (std::size_t k = 0; k < edges; ++k) graph.edges.push_back(take_edge(in, frames));
   map.frames = KeyFrames(std::move(kept), std::move(before), std::move(graph));
-  const std::size_t scans = in.count(62);
+  const std::size_t scans = in.count(56);
   for (std::size_t k = 0; k < scans; ++k) {
     SavedScan scan;
     scan.frame = take_index(in, frames);

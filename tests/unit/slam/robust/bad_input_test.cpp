@@ -302,6 +302,28 @@ TEST(RobustBadInput, AScannerThatNeverHasMoreThanABeamOrTwoLeavesThePoseToTheOdo
   }
 }
 
+/// Readers of logs tell no angle between the beams where there is but one.
+TEST(RobustBadInput, TheMapOfAScannerOfOneBeamOrTwoIsReadBack) {
+  for (const std::size_t beams : {1u, 2u}) {
+    SCOPED_TRACE(std::to_string(beams) + " beams");
+    const Ticks ticks = with_scans(
+        tour(1), [](std::size_t) { return true; },
+        [&](LaserScan& scan) {
+          scan.ranges.resize(beams);
+          if (beams == 1) scan.angle_step = 0.0;
+        });
+    RobustMapper mapper(RobotModel(), {}, 1);
+    slam_test::play(mapper, ticks);
+    EXPECT_EQ(mapper.counts().out_of_order, 0u);
+    const TPose2D told = ticks.back().odometry.back().pose - ticks.front().odometry.front().pose;
+    EXPECT_NEAR(mapper.pose().x, told.x, 0.1);
+    EXPECT_NEAR(mapper.pose().y, told.y, 0.1);
+    const SavedMap map = decode_map(mapper.saved_map(), "map");
+    EXPECT_EQ(map.scans.size(), mapper.counts().mapped);
+    EXPECT_GT(map.scans.size(), 10u);
+  }
+}
+
 TEST(RobustBadInput, AccelerometerWrongOrGone) {
   const auto with = [](const std::function<robot::Acceleration(Stamp, Rng&)>& feel) {
     Ticks ticks = tour(1);
