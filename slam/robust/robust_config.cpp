@@ -6,7 +6,14 @@ namespace rubble::slam {
 
 namespace {
 
-constexpr double kFarSight = 8.0;  ///< from this reach a scanner sees surfaces from afar, thinly [m]
+constexpr double kFarSight = 8.0;    ///< from this reach a scanner sees surfaces from afar, thinly [m]
+constexpr double kLeastCell = 0.02;  ///< of surfels [m]: the memory of their grid grows with its square
+
+/// 0, which leaves the choice to the reach, or a number within bounds.
+void chosen_or_number(Binder& b, const char* key, double& value, double low, double high) {
+  b.number(key, value, 0.0, high);
+  if (!b.writes() && value > 0.0 && value < low) b.number(key, value, low, high);
+}
 
 }  // namespace
 
@@ -54,7 +61,7 @@ void bind(Binder& b, RobustConfig& c) {
   b.section("matching", [&](Binder& m) {
     m.number("spacing_m", c.cloud.spacing, 0.01, 1.0);
     m.number("loose_within_m", c.cloud.loose_within, 0.0, 100.0);
-    m.number("cell_m", c.tracker.cell, 0.0, 1.0);
+    chosen_or_number(m, "cell_m", c.tracker.cell, kLeastCell, 1.0);
     m.integer("frames", c.tracker.frames, 1, 1000);
     m.number("path_m", c.tracker.path, 0.0, 1000.0);
     m.number("distance_error", c.tracker.distance_error, 0.0, 10.0);

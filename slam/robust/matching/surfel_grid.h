@@ -20,7 +20,7 @@ struct Surfel {
 /// Filled by add() between begin() and finish(), then asked.
 class SurfelGrid {
  public:
-  /// Covers [low, high] and a metre around it.
+  /// Covers [low, high] and a metre around it; in larger cells where they would be too many.
   void begin(double cell, const mrpt::math::TPoint2D& low, const mrpt::math::TPoint2D& high);
   /// Adds points seen from T; those without a normal say nothing about a surface and are passed over.
   void add(const std::vector<OrientedPoint>& points, const mrpt::math::TPose2D& T);

@@ -34,6 +34,25 @@ double nearest_by_trying(const SurfelGrid& grid, const OrientedPoint& p, double 
 /// Cells are looked at in a block of whole cells: within so much of a point all are.
 double surely_seen(double cell, double radius) { return std::ceil(radius / cell - 0.5) * cell; }
 
+/// What is seen from one end of a valley to the other, in cells of 2 cm: far more than can be numbered.
+TEST(SurfelGrid, TooManyCellsAreTakenLarger) {
+  SurfelGrid grid;
+  grid.begin(0.02, {-2000.0, -2000.0}, {2000.0, 2000.0});
+  std::vector<OrientedPoint> points;
+  for (int k = 0; k <= 40; ++k) {
+    const auto along = static_cast<float>(k * 100 - 2000);
+    points.push_back({along, -along, 1.0F, 0.0F});
+    points.push_back({along, 0.5F * along, 0.0F, 1.0F});
+  }
+  grid.add(points, {});
+  grid.finish();
+  for (const OrientedPoint& p : points) {
+    const Surfel* found = grid.nearest(p.x, p.y, p.nx, p.ny, 0.3F);
+    ASSERT_NE(found, nullptr) << p.x << ", " << p.y;
+    EXPECT_LT(std::sqrt(d2(*found, p.x, p.y)), 0.01);
+  }
+}
+
 TEST(SurfelGrid, NearestIsTheNearestOfAll) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
