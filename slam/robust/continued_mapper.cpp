@@ -25,8 +25,10 @@ constexpr double kHeldAngle = 0.5;     ///< [rad]
 constexpr double kSameMount = 1e-6;    ///< [m, rad]
 constexpr float kOffInliers = 0.40F;   ///< below, a scan does not show what the map does ...
 constexpr float kOffContradiction = 0.30F;  ///< ... nor from here on
-constexpr int kOffScans = 12;               ///< so many of them more than twice the others: carried off
-constexpr int kAgreeing = 2;                ///< what a scan that agrees takes off that number
+constexpr float kLeastHits = 15.0F;         ///< a scan with fewer shows nothing at all
+constexpr double kOffTime = 1.15;      ///< off for so much longer than twice the time it was not: carried off [s] ...
+constexpr double kMostScanTime = 0.1;  ///< ... where no scan stands for more: twelve at least, if stamps scatter [s]
+constexpr double kAgreeing = 2.0;      ///< what a scan that agrees takes off that time, in parts of its own
 // Maps of two arenas that were laid on each other contradict: of some 1,750 key frames 8 to 461, those of one arena 0.
 // A right map alone has up to 0.0013 of its own (robust_mapper.cpp).
 constexpr std::size_t kMostDoubled = 3;     ///< key frames that doing so may add ...
@@ -204,7 +206,7 @@ void ContinuedMapper::update(const robot::Inputs& inputs) {
     if (finder_.found()) join(*finder_.found());
   }
   take_news();
-  if (joined_ && !base_->grows && off_ >= kOffScans) lose();
+  if (joined_ && !base_->grows && off_time_ >= kOffTime) lose();
 }
 
 /// Takes over what the drive's last scans brought.
@@ -213,14 +215,18 @@ void ContinuedMapper::take_news() {
   const std::size_t columns = news.columns.size();
   for (; recorded_ < news.stamps.size(); ++recorded_) {
     const float* row = news.values.data() + recorded_ * columns;
-    records_.stamps.push_back(news.stamps[recorded_]);
+    const Stamp stamp = news.stamps[recorded_];
+    const double time = records_.stamps.empty() ? kMostScanTime : stamp - records_.stamps.back();
+    records_.stamps.push_back(stamp);
     records_.values.insert(records_.values.end(), row, row + columns);
     records_.values.push_back(joined_ ? 1.0F : 0.0F);
     if (!joined_) continue;
     live_.push_back(drive_->live_trajectory()[recorded_]);
+    if (row[kBeamsColumn] - row[kRejectedColumn] < kLeastHits) continue;
     const bool off = row[kInliersColumn] < kOffInliers || row[kContradictionColumn] > kOffContradiction;
-    off_ = off ? off_ + 1 : std::max(0, off_ - kAgreeing);
-    if (off_ == 0) agreed_ = news.stamps[recorded_];
+    const double counts = std::clamp(time, 0.0, kMostScanTime);
+    off_time_ = off ? off_time_ + counts : std::max(0.0, off_time_ - kAgreeing * counts);
+    if (off_time_ == 0.0) agreed_ = stamp;
   }
   const MapperCounts& now = drive_->counts();
   counts_ = {ended_.scans + now.scans, ended_.mapped + now.mapped, ended_.out_of_order + now.out_of_order};
@@ -234,7 +240,7 @@ void ContinuedMapper::join(const FoundPlace& place) {
   else
     drive_->go_on_in(saved_.frames, map_, place.T_map_drive, false);
   joined_ = true;
-  off_ = 0;
+  off_time_ = 0.0;
   ++joins_;
   ++revision_;
 }

@@ -73,7 +73,7 @@ class ContinuedMapper : public Mapper {
   std::unique_ptr<RobustMapper> drive_;
   int looked_at_ = -1;  ///< newest key frame of the drive that the finder was told of
   bool joined_ = false;
-  int off_ = 0;                    ///< scans that do not show what the map does, less those that do
+  double off_time_ = 0.0;          ///< for which scans did not show what the map does, less that for which they did [s]
   Stamp agreed_ = Stamp::never();  ///< the last scan while none was off
   std::optional<mrpt::math::TPose2D> last_known_;
   Trajectory before_;       ///< of drives that ended

@@ -115,6 +115,19 @@ inline Drive drive_through(const std::vector<TPoint2D>& points, double heading, 
   return drive;
 }
 
+/// The same drive, sampled every `tick` seconds.
+inline Drive finer(const Drive& drive, double tick) {
+  Drive out;
+  out.tick = tick;
+  const Stamp first = drive.truth.front().stamp;
+  const auto n = static_cast<std::int64_t>((drive.truth.back().stamp - first) / tick + 1e-6);
+  for (std::int64_t i = 0; i <= n; ++i) {
+    const Stamp stamp{first.ns + i * std::llround(tick * 1e9)};
+    out.truth.push_back({stamp, *pose_at(drive.truth, stamp)});
+  }
+  return out;
+}
+
 /// Odometry with the three errors of the paper, each draw held for half a metre or one radian: drawn at every step they
 /// would average out.
 inline std::vector<robot::Odometry> noisy_odometry(const Trajectory& truth, double share, Rng& rng) {

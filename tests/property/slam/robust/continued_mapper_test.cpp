@@ -306,6 +306,84 @@ TEST(ContinuedMapper, ARobotThatIsCarriedOffFindsItsPlaceAgain) {
   }
 }
 
+/// A scanner that scans so often, on a robot that localises itself on a map of an earlier drive.
+struct Follower {
+  slam_test::Floor floor;
+  RobotModel model;
+  double period;  ///< [s]
+  Recorded first;
+
+  Follower(std::uint64_t seed, double period)
+      : floor(seed, 3, 2), period(period), first(recorded(floor, kRound, 0.0, seed)) {
+    model.laser.scan_period = period;
+  }
+  Recorded drive(const std::vector<Cell>& rooms, double heading, std::uint64_t seed) const {
+    Recorded out{slam_test::finer(slam_test::drive_through(floor.way(rooms), heading), period), {}};
+    out.ticks = slam_test::record(floor.world(), out.drive, model, 0.5, 0.01, seed);
+    return out;
+  }
+  ContinuedMapper mapper(const Recorded& drive) const {
+    const TPose2D start = drive.drive.truth.front().pose - first.drive.truth.front().pose;
+    return {model, {}, base(map_of(first.ticks), false, start)};
+  }
+};
+
+/// Changes the scans from `from` on, for `seconds`.
+Ticks spoiled_for(Ticks ticks, double from, double seconds, float range) {
+  for (Inputs& tick : ticks) {
+    const double t = tick.now - ticks.front().now;
+    if (t < from || t >= from + seconds) continue;
+    for (robot::LaserScan& scan : tick.scans) scan.ranges.assign(scan.ranges.size(), range);
+  }
+  return ticks;
+}
+
+/// Scans that see nothing do not say that the robot is elsewhere, and what hides the view for a moment does not either,
+/// however often the scanner scans.
+TEST(ContinuedMapper, ABlindSpellIsNoReasonToThinkThatTheRobotWasCarriedOff) {
+  struct Spell {
+    double seconds;
+    float range;  ///< of all beams [m]
+  };
+  constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
+    for (const double period : {0.1, 0.025}) {
+      const Follower robot(seed, period);
+      const Recorded drive = robot.drive(kElsewhere, -1.0, seed + 50);
+      for (const Spell& spell :
+           {Spell{5.0, kNothing}, Spell{5.0, std::numeric_limits<float>::infinity()}, Spell{0.35, 0.3F}}) {
+        SCOPED_TRACE("seed " + std::to_string(seed) + ", period " + std::to_string(period) + " s, range " +
+                     std::to_string(spell.range));
+        ContinuedMapper mapper = robot.mapper(drive);
+        play(mapper, spoiled_for(drive.ticks, 15.0, spell.seconds, spell.range));
+        EXPECT_EQ(figure(mapper, "carried_off"), 0.0);
+        EXPECT_EQ(figure(mapper, "place_known"), 1.0);
+        const TPose2D expected = drive.drive.truth.back().pose - robot.first.drive.truth.front().pose;
+        EXPECT_LT(length(mapper.pose().x - expected.x, mapper.pose().y - expected.y), 0.08);
+      }
+    }
+}
+
+TEST(ContinuedMapper, ARobotThatIsCarriedOffIsMissedSoonHoweverOftenItScans) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
+    for (const double period : {0.1, 0.025}) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", period " + std::to_string(period) + " s");
+      const Follower robot(seed, period);
+      const Recorded before = robot.drive({{0, 0}, {1, 0}, {2, 0}}, 0.0, seed + 50);
+      const Recorded after = robot.drive({{0, 1}, {1, 1}, {2, 1}, {2, 0}}, 1.0, seed + 60);
+      ContinuedMapper mapper = robot.mapper(before);
+      play(mapper, before.ticks);
+      const Ticks all = slam_test::spliced(before.ticks, after.ticks);
+      ContinuedMapper again = robot.mapper(before);
+      play(again, all);
+      EXPECT_EQ(figure(mapper, "carried_off"), 0.0);
+      EXPECT_EQ(figure(again, "carried_off"), 1.0);
+      EXPECT_EQ(figure(again, "place_known"), 1.0);
+      const TPose2D expected = after.drive.truth.back().pose - robot.first.drive.truth.front().pose;
+      EXPECT_LT(length(again.pose().x - expected.x, again.pose().y - expected.y), 0.08);
+    }
+}
+
 /// Two robots that saw different parts of a floor, and some of it both.
 TEST(MergedMaps, LieInOneFrame) {
   const RobustConfig config = suited_to(RobotModel().laser, {});
