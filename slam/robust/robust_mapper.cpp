@@ -532,7 +532,7 @@ std::optional<TPose2D> RobustMapper::Impl::pose_at(Stamp stamp) const {
                                       [](const Place& place, Stamp s) { return place.stamp < s; });
   if (after == scans_.end()) {
     if (!motion_.hears_odometry() || stamp > motion_.odometry().newest()) return std::nullopt;
-    return now() + motion_.since_scan(stamp);
+    return now() + motion_.believed_since_scan(stamp);
   }
   const auto index = static_cast<std::size_t>(after - scans_.begin());
   if (after->stamp == stamp) return pose_of(index);
@@ -565,7 +565,7 @@ const CountMap& RobustMapper::map() const { return impl_->map_.map(); }
 
 TPose2D RobustMapper::pose() const {
   if (impl_->frames_.empty()) return {};
-  return impl_->now() + impl_->motion_.since_scan(impl_->motion_.odometry().newest());
+  return impl_->now() + impl_->motion_.believed_since_scan(impl_->motion_.odometry().newest());
 }
 
 PoseCovariance RobustMapper::covariance() const {

@@ -39,6 +39,8 @@ void TiltTrack::add(const robot::Inputs& inputs) {
     follow(waiting_.front());
     waiting_.pop_front();
   }
+  // Whoever forgets by the clock of the wheels does not where these are silent.
+  forget_before(inputs.now - kAhead - WaitingScans::kLateScan);
 }
 
 /// The servo follows its pulses.

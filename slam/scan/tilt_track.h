@@ -40,6 +40,8 @@ class TiltTrack {
   /// Of a body that leans so [rad].
   ScanTilt on_body(double pitch, double roll, Stamp stamp) const;
   void forget_before(Stamp oldest_needed);
+  /// Samples that are kept.
+  std::size_t size() const { return wheels_.size() + waiting_.size() + leans_.size() + aims_.size(); }
 
  private:
   /// Of the body.

@@ -46,11 +46,22 @@ bool outruns_robots(const TPose2D& motion, double time) {
 }  // namespace
 
 void MotionExpectation::hear(const robot::Odometry& report, Stamp now) {
-  if (finite(report) && report.stamp - now <= kAhead) odometry_.add(report);
+  if (!finite(report) || report.stamp - now > kAhead || report.stamp <= odometry_.newest()) return;
+  robot::Odometry smooth = report;
+  if (!odometry_.empty()) {
+    const TPose2D step = report.pose - odometry_.pose_at(odometry_.newest());
+    const bool jump = is_jump(step, report.stamp - odometry_.newest());
+    smooth.pose = without_jumps_.pose_at(odometry_.newest()) + (jump ? TPose2D() : step);
+    if (jump) last_jump_ = report.stamp;
+  }
+  without_jumps_.add(smooth);
+  odometry_.add(report);
 }
 
 void MotionExpectation::begin_late() {
-  if (last_scan_ && !T_odom_scan_ && !odometry_.empty()) T_odom_scan_ = odometry_.pose_at(Stamp::never());
+  if (!last_scan_ || T_odom_scan_ || odometry_.empty()) return;
+  T_odom_scan_ = odometry_.pose_at(Stamp::never());
+  T_smooth_scan_ = without_jumps_.pose_at(Stamp::never());
 }
 
 ExpectedMotion MotionExpectation::expect(const LaserScan& scan) {
@@ -150,6 +161,7 @@ void MotionExpectation::found(const TPose2D& step, double time, bool contradicte
 
 void MotionExpectation::scan_taken(Stamp reference) {
   if (!odometry_.empty()) T_odom_scan_ = odometry_.pose_at(reference);
+  T_smooth_scan_ = without_jumps_.pose_at(reference);
   last_scan_ = reference;
   silent_at_scan_.reset();
 }
@@ -158,10 +170,27 @@ TPose2D MotionExpectation::since_scan(Stamp stamp) const {
   return T_odom_scan_ ? odometry_.pose_at(stamp) - *T_odom_scan_ : TPose2D();
 }
 
+TPose2D MotionExpectation::believed_since_scan(Stamp stamp) const {
+  if (!T_odom_scan_ || !last_scan_ || last_jump_ <= *last_scan_) return since_scan(stamp);
+  return without_jumps_.pose_at(stamp) - T_smooth_scan_;
+}
+
+/// Of a step from one report to the next. Where reports come much more often than scans, a robot of 10 m/s makes but a
+/// small one.
+bool MotionExpectation::is_jump(const TPose2D& step, double time) const {
+  const double path = length(step.x, step.y);
+  const double turn = std::abs(wrap_angle(step.phi));
+  if (path <= kLeastJump && turn <= kLeastJump) return false;
+  if (kOften * time <= scan_period_) return outruns_robots(step, time);
+  const double slowest = std::max(time, scan_period_);
+  return (path > kLeastJump && path > kFastest * slowest) || (turn > kLeastJump && turn > kFastestTurn * slowest);
+}
+
 void MotionExpectation::forget_before(Stamp oldest_needed) {
   if (last_scan_ && !silent_at_scan_ && *last_scan_ < oldest_needed)
     silent_at_scan_ = odometry_.silent_at(*last_scan_);  // the last time that it can be told
   odometry_.forget_before(oldest_needed);
+  without_jumps_.forget_before(oldest_needed);
 }
 
 }  // namespace rubble::slam

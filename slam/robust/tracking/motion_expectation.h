@@ -43,6 +43,8 @@ class MotionExpectation {
   void scan_taken(Stamp reference);
   /// By odometry, from the last scan to `stamp`.
   mrpt::math::TPose2D since_scan(Stamp stamp) const;
+  /// The same without steps that no robot makes, for those who cannot wait for what the next scan says.
+  mrpt::math::TPose2D believed_since_scan(Stamp stamp) const;
   bool hears_odometry() const { return T_odom_scan_.has_value(); }
   /// Forgets reports that no question about `oldest_needed` or later can touch.
   void forget_before(Stamp oldest_needed);
@@ -53,13 +55,17 @@ class MotionExpectation {
  private:
   bool jumps_within(const robot::LaserScan& scan) const;
   bool jumps_between_reports(Stamp reference) const;
+  bool is_jump(const mrpt::math::TPose2D& step, double time) const;
   std::optional<mrpt::math::TPose2D> carried(double time) const;
   double in_vain(double time) const;
 
   const double scan_period_;  ///< [s]
   OdometryTrack odometry_;
+  OdometryTrack without_jumps_;  ///< the same as if steps that no robot makes had not been
+  Stamp last_jump_ = Stamp::never();
   std::optional<Stamp> last_scan_;
   std::optional<mrpt::math::TPose2D> T_odom_scan_;  ///< at the last scan; nothing while no odometry has come
+  mrpt::math::TPose2D T_smooth_scan_;               ///< the same in without_jumps_
   /// Whether odometry was silent at the last scan, once what was said is forgotten.
   std::optional<bool> silent_at_scan_;
   mrpt::math::TPose2D last_step_;  ///< between the last two scans, as matched

@@ -188,6 +188,25 @@ TEST(TiltTrack, WithoutAccelerationsNothingIsToldAndNothingWaitedFor) {
   EXPECT_FALSE(track.at(tick.now));
 }
 
+/// Memory does not grow with the drive where no wheels tell what may be forgotten.
+TEST(TiltTrack, WithoutOdometryAsMuchIsKeptAfterAMinuteAsAfterTenSeconds) {
+  Ride ride;
+  ride.pitch = [](double t) { return deg_to_rad(5.0) * std::sin(t); };
+  ride.servo = ride.pulse = [](double) { return 0.0; };
+  TiltTrack track(RobotModel(), {});
+  std::size_t early = 0;
+  for (Inputs tick : sensed(ride, RobotModel(), 60.0)) {
+    tick.odometry.clear();
+    track.add(tick);
+    if (early == 0 && tick.now >= Stamp::from_seconds(10.0)) early = track.size();
+    if (tick.now >= Stamp::from_seconds(2.0)) {
+      EXPECT_TRUE(track.at(tick.now - 1.0));
+    }
+  }
+  EXPECT_GT(early, 100u);
+  EXPECT_LE(track.size(), early + 10);
+}
+
 TEST(TiltTrack, OfASilentUnitTheServosAreKnownToHold) {
   Ride ride;
   ride.pitch = [](double) { return deg_to_rad(8.0); };
