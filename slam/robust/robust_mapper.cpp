@@ -14,6 +14,7 @@
 #include "slam/robust/graph/wall_compass.h"
 #include "slam/robust/map/stamped_map.h"
 #include "slam/robust/tracking/motion_expectation.h"
+#include "slam/robust/tracking/repeated_scans.h"
 #include "slam/robust/tracking/scan_diary.h"
 #include "slam/scan/waiting_scans.h"
 
@@ -75,7 +76,7 @@ struct RobustMapper::Impl {
 
   void receive(const robot::Inputs& inputs);
   bool ready(Stamp now) const;
-  void process(const LaserScan& scan);
+  void process(LaserScan scan);
   std::optional<ScanTilt> tilt_of(Stamp reference, const ExpectedMotion& motion) const;
   bool level_and_steady(const ScanTilt& tilt, Stamp reference) const;
   bool asks_for_frame(const Tracked& tracked) const;
@@ -127,6 +128,7 @@ struct RobustMapper::Impl {
   TiltTrack tilt_;
   const robot::SlopeCreep creep_;
   MotionExpectation motion_;
+  RepeatedScans repeated_;
   KeyFrames frames_;
   LocalTracker tracker_;
   WallCompass compass_;
@@ -186,9 +188,10 @@ bool RobustMapper::Impl::ready(Stamp now) const {
   return waiting_.ready(motion_.odometry(), now) && (!config_.use_tilt || tilt_.ready(waiting_.front().middle(), now));
 }
 
-void RobustMapper::Impl::process(const LaserScan& scan) {
+void RobustMapper::Impl::process(LaserScan scan) {
   const Stamp reference = scan.middle();
   ExpectedMotion motion = motion_.expect(scan);
+  if (repeated_.is_repeated(scan, motion)) scan.ranges.assign(scan.ranges.size(), LaserScan::kUnknown);
   std::optional<SweepMotion> sweep = config_.deskew ? motion_.sweep(scan, motion) : std::nullopt;
   const std::optional<ScanTilt> tilt = config_.use_tilt ? tilt_of(reference, motion) : std::nullopt;
   if (tilt && motion.told) {
@@ -621,6 +624,7 @@ std::vector<MapperFigure> RobustMapper::figures() const {
           {"relocated", static_cast<double>(impl_->relocated_)},
           {"unseen", static_cast<double>(impl_->unseen_)},
           {"odometry_silent", static_cast<double>(impl_->motion_.silent())},
+          {"scans_repeated", static_cast<double>(impl_->repeated_.count())},
           {"lost", static_cast<double>(impl_->lost_)},
           {"odometry_jumps", static_cast<double>(impl_->motion_.jumps())},
           {"loops_searched", static_cast<double>(loops.searched)},

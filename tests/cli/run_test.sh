@@ -58,7 +58,7 @@ import json, sys
 a, b = json.load(open('a/score.json')), json.load(open('score.json'))
 same = ('score', 'precision', 'recall', 'psi_m', 'known', 'phantom_m', 'missing_m', 'ignored_m', 'worst_places', 'map')
 # Of the mapper alone: a judge does not know it.
-own = ('key_frames', 'frames_reused', 'slips', 'relocated', 'unseen', 'odometry_silent', 'lost', 'odometry_jumps',
+own = ('key_frames', 'frames_reused', 'slips', 'relocated', 'unseen', 'odometry_silent', 'scans_repeated', 'lost', 'odometry_jumps',
        'loops_searched', 'loops_ambiguous', 'loops_contradicted', 'loops_needless', 'loops_closed',
        'loops_removed', 'near_edges', 'frames_astray', 'frames_doubled', 'scans_unfit', 'map_doubted', 'graph_solved',
        'last_work_ms', 'work_ms',
