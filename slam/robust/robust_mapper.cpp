@@ -13,6 +13,7 @@
 #include "slam/robust/graph/known_ground.h"
 #include "slam/robust/graph/wall_compass.h"
 #include "slam/robust/map/stamped_map.h"
+#include "slam/robust/tracking/known_leans.h"
 #include "slam/robust/tracking/motion_expectation.h"
 #include "slam/robust/tracking/repeated_scans.h"
 #include "slam/robust/tracking/scan_diary.h"
@@ -77,7 +78,7 @@ struct RobustMapper::Impl {
   void receive(const robot::Inputs& inputs);
   bool ready(Stamp now) const;
   void process(LaserScan scan);
-  std::optional<ScanTilt> tilt_of(Stamp reference, const ExpectedMotion& motion) const;
+  std::optional<ScanTilt> tilt_of(Stamp reference, const ExpectedMotion& motion, Work* work) const;
   bool level_and_steady(const ScanTilt& tilt, Stamp reference) const;
   bool asks_for_frame(const Tracked& tracked) const;
   bool hang_on_old_frame(const Cloud& cloud, Work* work);
@@ -103,23 +104,11 @@ struct RobustMapper::Impl {
   TPose2D pose_of(std::size_t scan) const { return frames_.pose(scans_[scan].frame) + scans_[scan].T_frame_base; }
   std::optional<TPose2D> pose_at(Stamp stamp) const;
 
-  /// Of the body; small enough to be turned like a vector.
-  struct Lean {
-    double pitch = 0.0;  ///< nose up [rad]
-    double roll = 0.0;   ///< left side up [rad]
-
-    /// Of a body that stands there turned by `angle` [rad].
-    Lean turned(double angle) const {
-      const double c = std::cos(angle), s = std::sin(angle);
-      return {c * pitch + s * roll, c * roll - s * pitch};
-    }
-  };
   /// Where a scan was taken.
   struct Place {
     Stamp stamp;
     int frame;
     TPose2D T_frame_base;
-    std::optional<Lean> lean;  ///< of the body, as felt
   };
 
   const RobustConfig config_;
@@ -149,6 +138,7 @@ struct RobustMapper::Impl {
   Eigen::Matrix3d frame_covariance_ = Eigen::Matrix3d::Zero();  ///< of that key frame, in the map
   Eigen::Matrix3d scan_covariance_ = Eigen::Matrix3d::Zero();   ///< of T_frame_base_, along the frame's axes
   std::vector<Place> scans_;
+  KnownLeans leans_;
   Trajectory live_;
   mutable Trajectory trajectory_;
   mutable std::uint64_t trajectory_revision_ = 0;
@@ -192,8 +182,9 @@ void RobustMapper::Impl::process(LaserScan scan) {
   const Stamp reference = scan.middle();
   ExpectedMotion motion = motion_.expect(scan);
   if (repeated_.is_repeated(scan, motion)) scan.ranges.assign(scan.ranges.size(), LaserScan::kUnknown);
+  Work work = 0;
   std::optional<SweepMotion> sweep = config_.deskew ? motion_.sweep(scan, motion) : std::nullopt;
-  const std::optional<ScanTilt> tilt = config_.use_tilt ? tilt_of(reference, motion) : std::nullopt;
+  const std::optional<ScanTilt> tilt = config_.use_tilt ? tilt_of(reference, motion, &work) : std::nullopt;
   if (tilt && motion.told) {
     const TPoint2D crept = creep_.expected({tilt->body_pitch, tilt->body_roll}, wrap_angle(motion.T_last_now.phi));
     motion.T_last_now.x += crept.x;
@@ -205,7 +196,6 @@ void RobustMapper::Impl::process(LaserScan scan) {
   motion.level = !tilt || level_and_steady(*tilt, reference);
   ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr, tilt ? &*tilt : nullptr);
   Cloud cloud = cloud_of(points, config_.cloud);
-  Work work = 0;
   bool sure = true;
   std::optional<Tracked> seen;
   double contradiction = 0.0;
@@ -252,8 +242,8 @@ void RobustMapper::Impl::process(LaserScan scan) {
     }
   }
   motion_.scan_taken(reference);
-  scans_.push_back({reference, here_, T_frame_base_, {}});
-  if (const auto felt = tilt_.at(reference)) scans_.back().lean = Lean{felt->body_pitch, felt->body_roll};
+  scans_.push_back({reference, here_, T_frame_base_});
+  if (const auto felt = tilt_.at(reference)) leans_.add(here_, T_frame_base_, {felt->body_pitch, felt->body_roll});
 
   // What waits is done bit by bit, the more of it the faster.
   const auto most = static_cast<Work>(config_.budget_ms * 1e6);
@@ -276,20 +266,11 @@ void RobustMapper::Impl::process(LaserScan scan) {
 
 /// Of a scan. Without a word from the levelling unit the scan plane stays where it was on the body, and that leans as
 /// it did in this place before, else as on level floor.
-std::optional<ScanTilt> RobustMapper::Impl::tilt_of(Stamp reference, const ExpectedMotion& motion) const {
+std::optional<ScanTilt> RobustMapper::Impl::tilt_of(Stamp reference, const ExpectedMotion& motion, Work* work) const {
   std::optional<ScanTilt> tilt = tilt_.at(reference);
   if (tilt || !tilt_.knows_servos() || !tilt_.fell_silent(reference)) return tilt;
-  const TPose2D T_map_base = now() + motion.T_last_now;
-  double nearest = kSameSlope;
   Lean lean;
-  for (std::size_t k = 0; k < scans_.size(); ++k) {
-    if (!scans_[k].lean) continue;
-    const TPose2D then = pose_of(k);
-    const double away = distance(position(then), position(T_map_base));
-    if (away >= nearest) continue;
-    nearest = away;
-    lean = scans_[k].lean->turned(wrap_angle(T_map_base.phi - then.phi));
-  }
+  if (!frames_.empty()) lean = leans_.nearest(frames_, now() + motion.T_last_now, kSameSlope, work);
   return tilt_.on_body(lean.pitch, lean.roll, reference);
 }
 
@@ -494,6 +475,10 @@ void RobustMapper::Impl::go_on_in(KeyFrames frames, StampedMap map, const TPose2
   std::vector<TPose2D> poses;
   for (std::size_t k = 0; k < scans_.size(); ++k) poses.push_back(T_map_drive + pose_of(k));
   frame_covariance_ = turned(frame_covariance_, T_map_drive.phi);
+  if (grows)
+    leans_.shift(shift);
+  else
+    leans_ = leans_.on(frames, frames_, T_map_drive);
   frames_ = std::move(frames);
   map_ = std::move(map);
   grows_ = grows;
