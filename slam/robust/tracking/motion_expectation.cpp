@@ -50,7 +50,8 @@ void MotionExpectation::hear(const robot::Odometry& report, Stamp now) {
   robot::Odometry smooth = report;
   if (!odometry_.empty()) {
     const TPose2D step = report.pose - odometry_.pose_at(odometry_.newest());
-    const bool jump = is_jump(step, report.stamp - odometry_.newest());
+    const double time = report.stamp - odometry_.newest();
+    const bool jump = is_jump(step, kOften * time <= scan_period_ ? time : std::max(time, scan_period_));
     smooth.pose = without_jumps_.pose_at(odometry_.newest()) + (jump ? TPose2D() : step);
     if (jump) last_jump_ = report.stamp;
   }
@@ -173,17 +174,6 @@ TPose2D MotionExpectation::since_scan(Stamp stamp) const {
 TPose2D MotionExpectation::believed_since_scan(Stamp stamp) const {
   if (!T_odom_scan_ || !last_scan_ || last_jump_ <= *last_scan_) return since_scan(stamp);
   return without_jumps_.pose_at(stamp) - T_smooth_scan_;
-}
-
-/// Of a step from one report to the next. Where reports come much more often than scans, a robot of 10 m/s makes but a
-/// small one.
-bool MotionExpectation::is_jump(const TPose2D& step, double time) const {
-  const double path = length(step.x, step.y);
-  const double turn = std::abs(wrap_angle(step.phi));
-  if (path <= kLeastJump && turn <= kLeastJump) return false;
-  if (kOften * time <= scan_period_) return outruns_robots(step, time);
-  const double slowest = std::max(time, scan_period_);
-  return (path > kLeastJump && path > kFastest * slowest) || (turn > kLeastJump && turn > kFastestTurn * slowest);
 }
 
 void MotionExpectation::forget_before(Stamp oldest_needed) {

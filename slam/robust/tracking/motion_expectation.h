@@ -55,7 +55,6 @@ class MotionExpectation {
  private:
   bool jumps_within(const robot::LaserScan& scan) const;
   bool jumps_between_reports(Stamp reference) const;
-  bool is_jump(const mrpt::math::TPose2D& step, double time) const;
   std::optional<mrpt::math::TPose2D> carried(double time) const;
   double in_vain(double time) const;
 
