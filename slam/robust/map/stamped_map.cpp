@@ -9,6 +9,7 @@
 #include "base/planar.h"
 #include "slam/robust/map/crisp_walls.h"
 #include "slam/robust/map/gone_things.h"
+#include "slam/robust/map/stamped_part.h"
 #include "slam/robust/map/wall_phase.h"
 
 namespace rubble::slam {
@@ -84,6 +85,7 @@ ScanPoints StampedMap::raw_points(const PackedScan& scan) {
 ScanPoints StampedMap::points_of(const PackedScan& scan) {
   ScanPoints points = raw_points(scan);
   drop_lone_hits(points);
+  cut_to({}, map_.frame().resolution, points);
   return points;
 }
 

@@ -29,6 +29,9 @@ constexpr int kGroup = 16;              ///< roots in a row that are summed at o
 constexpr std::uint32_t kFine = 63;     ///< the coarse raster's values are rounded up to 63rds ...
 constexpr std::size_t kSafe = 4;        ///< ... so that so many of them add up within a byte
 constexpr std::size_t kSafeSums = 256;  ///< bytes whose sum fits in 16 bits
+constexpr double kMostCells = 2.4e6;    ///< of a raster, but for its border: the widest hall measured has 2.3 million
+constexpr double kCoarseCells = 1.2e6;  ///< of one that would have more
+constexpr double kLeastBlur = 1.0;      ///< of a raster that is coarser than asked for, in its cells
 constexpr Work kCellsPerWork = 2;       ///< of pooling a raster
 constexpr Work kWorkPerSurfel = 30;
 constexpr Work kWorkPerLookup = 6;  ///< of the four quarters at one point
@@ -47,13 +50,37 @@ int whole_groups(int cells) { return (cells + kGroup - 1) / kGroup * kGroup; }
 
 std::size_t plane(int width, int height) { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 
+/// The resolution asked for, or a coarser one where the raster would have too many cells.
+double affordable(double resolution, const Correlator::Extent& extent) {
+  const double width = static_cast<double>(extent.high_x) - static_cast<double>(extent.low_x);
+  const double height = static_cast<double>(extent.high_y) - static_cast<double>(extent.low_y);
+  const double area = width * height;
+  return area > kMostCells * resolution * resolution ? std::sqrt(area / kCoarseCells) : resolution;
+}
+
+Correlator::Extent extent_of(const std::vector<Surfel>& surfels) {
+  if (surfels.empty()) return {};
+  constexpr float kMost = std::numeric_limits<float>::max();
+  Correlator::Extent extent{kMost, kMost, -kMost, -kMost};
+  for (const Surfel& q : surfels) {
+    extent.low_x = std::min(extent.low_x, q.x);
+    extent.low_y = std::min(extent.low_y, q.y);
+    extent.high_x = std::max(extent.high_x, q.x);
+    extent.high_y = std::max(extent.high_y, q.y);
+  }
+  return extent;
+}
+
 }  // namespace
 
 void Correlator::build(const std::vector<Surfel>& surfels, double resolution, double blur, Work* work) {
-  resolution_ = resolution;
-  per_m_ = static_cast<float>(1.0 / resolution);
+  const Extent extent = extent_of(surfels);
+  resolution_ = affordable(resolution, extent);
+  coarser_ = resolution_ / resolution;
+  per_m_ = static_cast<float>(1.0 / resolution_);
+  if (coarser_ > 1.0) blur = std::max(blur, kLeastBlur * resolution_);
   const int reach = std::max(1, static_cast<int>(std::ceil(kBlurReach * blur / resolution_)));
-  lay_out(surfels, reach);
+  lay_out(extent, reach);
   draw(surfels, blur, reach);
   for (int level = 1; level < kLevels; ++level) pool(level);
   pool_roots();
@@ -64,22 +91,13 @@ void Correlator::build(const std::vector<Surfel>& surfels, double resolution, do
 }
 
 /// How large the planes are, and where they lie.
-void Correlator::lay_out(const std::vector<Surfel>& surfels, int reach) {
-  float low_x = std::numeric_limits<float>::max(), low_y = low_x;
-  float high_x = std::numeric_limits<float>::lowest(), high_y = high_x;
-  for (const Surfel& q : surfels) {
-    low_x = std::min(low_x, q.x);
-    low_y = std::min(low_y, q.y);
-    high_x = std::max(high_x, q.x);
-    high_y = std::max(high_y, q.y);
-  }
-  if (surfels.empty()) low_x = low_y = high_x = high_y = 0.0F;
+void Correlator::lay_out(const Extent& extent, int reach) {
   const auto border = static_cast<float>((reach + 1) * resolution_);
-  x0_ = low_x - border;
-  y0_ = low_y - border;
+  x0_ = extent.low_x - border;
+  y0_ = extent.low_y - border;
   const int side = 2 * reach + 1;
-  width_ = static_cast<int>((high_x - x0_) * per_m_) + reach + 2 + whole_groups(side) - side;
-  height_ = static_cast<int>((high_y - y0_) * per_m_) + reach + 2;
+  width_ = static_cast<int>((extent.high_x - x0_) * per_m_) + reach + 2 + whole_groups(side) - side;
+  height_ = static_cast<int>((extent.high_y - y0_) * per_m_) + reach + 2;
   coarse_columns_ = (width_ - 1) / kCoarse + 1 + kCoarsePad;
   coarse_height_ = (height_ - 1) / kCoarse + 1 + kCoarsePad + 2;  // an empty row below and above
   coarse_stride_ = (coarse_columns_ + kStep - 1) / kStep + 2 * kGroup;
@@ -336,7 +354,8 @@ void CorrelativeSearch::start(const Correlator& target, const std::vector<Orient
   exclusion_ = exclusion;
   float reach = 0.5F;
   for (const OrientedPoint& p : points) reach = std::max(reach, std::sqrt(p.x * p.x + p.y * p.y));
-  angle_step_ = std::max(target.resolution() / std::min(static_cast<double>(reach), kLongReach), kFinestAngle);
+  const double most_reach = kLongReach * target.coarser();
+  angle_step_ = std::max(target.resolution() / std::min(static_cast<double>(reach), most_reach), kFinestAngle);
   angles_ = static_cast<int>(std::ceil(window.angle / angle_step_));
   cells_ = static_cast<int>(std::ceil(window.distance / target.resolution()));
   best_ = floor;

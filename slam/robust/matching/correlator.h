@@ -23,10 +23,17 @@ class Correlator {
   static constexpr int kRootCells = 16;         ///< a side of the squares that a search begins with
   static constexpr std::size_t kStretches = 8;  ///< of the points
 
-  /// `blur`: sigma of the Gaussian [m].
+  /// Where surfels lie [m].
+  struct Extent {
+    float low_x = 0.0F, low_y = 0.0F, high_x = 0.0F, high_y = 0.0F;
+  };
+
+  /// `blur`: sigma of the Gaussian [m]. Where surfels lie so far apart that the raster would have more than some
+  /// millions of cells, which no scan has the time for, both are coarser than asked for.
   void build(const std::vector<Surfel>& surfels, double resolution, double blur, Work* work = nullptr);
 
   double resolution() const { return resolution_; }
+  double coarser() const { return coarser_; }
   /// Of a point; may lie outside the raster.
   Cell cell(float x, float y) const {
     return {static_cast<int>(std::floor((x - x0_) * per_m_)), static_cast<int>(std::floor((y - y0_) * per_m_))};
@@ -53,12 +60,13 @@ class Correlator {
              std::vector<Sums>& out) const;
 
  private:
-  void lay_out(const std::vector<Surfel>& surfels, int reach);
+  void lay_out(const Extent& extent, int reach);
   void draw(const std::vector<Surfel>& surfels, double blur, int reach);
   void pool(int level);
   void pool_roots();
 
   double resolution_ = 0.05;
+  double coarser_ = 1.0;  ///< times the cell asked for
   float per_m_ = 20.0F;
   float x0_ = 0.0F, y0_ = 0.0F;
   int width_ = 0, height_ = 0;

@@ -117,6 +117,39 @@ TEST(Correlator, ValueFallsOffFromSurfelsAsAGaussian) {
   }
 }
 
+/// Walls of rooms strewn over a square of `side` metres about the origin.
+SurfelGrid strewn_rooms(double side, std::uint64_t seed) {
+  Rng rng(seed, "rooms");
+  slam_test::World world;
+  for (int k = 0; k < 40; ++k) {
+    const double x = rng.uniform(-0.5, 0.45) * side;
+    const double y = rng.uniform(-0.5, 0.45) * side;
+    slam_test::add_box(world, x, y, x + rng.uniform(1.0, 0.05 * side), y + rng.uniform(1.0, 0.05 * side));
+  }
+  slam_test::add_box(world, -0.5 * side, -0.5 * side, 0.5 * side, 0.5 * side);
+  return slam_test::surfel_grid(slam_test::surface_points(world, 0.1), 0.15);
+}
+
+/// The raster of what lies far apart is coarser, and so no larger than that of a hall; the place is found to a cell.
+TEST(Correlator, TheRasterOfWhatLiesFarApartTakesNoMoreWorkThanThatOfAHall) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
+    for (const double side : {70.0, 100.0, 300.0, 600.0}) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", side " + std::to_string(side));
+      const SurfelGrid rooms = strewn_rooms(side, seed);
+      Correlator correlator;
+      Work work = 0;
+      correlator.build(rooms.surfels(), kCell, kBlur, &work);
+      EXPECT_EQ(correlator.resolution() > kCell, side > 70.0);
+      EXPECT_LT(work - 30 * static_cast<Work>(rooms.surfels().size()), 5200000);
+      const TPose2D truth(0.3, -0.2, 0.02);
+      const auto found = search(correlator, slam_test::seen_from(truth, rooms.thinned_to(kSearchedPoints)),
+                                {{}, 0.6, 0.1}, 0.3, std::nullopt);
+      ASSERT_TRUE(found);
+      EXPECT_LT(length(found->pose.x - truth.x, found->pose.y - truth.y), 1.5 * correlator.resolution());
+      EXPECT_LT(std::abs(wrap_angle(found->pose.phi - truth.phi)), 0.02);
+    }
+}
+
 TEST(Correlator, LevelsAreMaximaOverSquares) {
   Rng rng(2, "walls");
   const Scene scene = random_scene(rng, {});
