@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kMargin = 1.0;  ///< around what is covered [m]
 /// 2.4 km by 2.4 km of cells of 0.15 m; more would count beyond 32 bits, and fill the memory.
-constexpr double kMostCells = 1U << 28U;
+constexpr double kMostGridCells = 1U << 28U;
 constexpr float kSlack = 0.01F;      ///< far more than a mean of points lies outside of their cell by rounding [m]
 constexpr float kOneSurface = 0.7F;  ///< cosine between normals that are averaged
 /// Cosine between normals that are matched. They scatter less by the scanner's noise, but for corners: a normal from
@@ -24,7 +24,7 @@ constexpr float kSameSide = 0.9F;
 void SurfelGrid::begin(double cell, const TPoint2D& low, const TPoint2D& high) {
   const double extent_x = high.x - low.x + 2.0 * kMargin;
   const double extent_y = high.y - low.y + 2.0 * kMargin;
-  cell = std::max(cell, std::sqrt(extent_x * extent_y / kMostCells));
+  cell = std::max(cell, std::sqrt(extent_x * extent_y / kMostGridCells));
   cells_per_m_ = static_cast<float>(1.0 / cell);
   x0_ = static_cast<float>(low.x - kMargin);
   y0_ = static_cast<float>(low.y - kMargin);
