@@ -12,6 +12,7 @@ expect_exit 2 'key.key=value' "$rubble" run s.yaml --set robot.levelling
 expect_exit 3 'nowhere.yaml' "$rubble" run nowhere.yaml
 expect_exit 3 '--set robot.leveling' "$rubble" run s.yaml --set robot.leveling=false
 expect_exit 3 'particles' "$rubble" run s.yaml --set mapper.kind=paper --set mapper.particles=-1
+expect_exit 3 "'cell_m' is '0.0001'; give a number from 0.02 to 1" "$rubble" run s.yaml --set mapper.matching.cell_m=0.0001
 printf 'name: x\nname: y\n' >twice.yaml
 expect_exit 3 'twice.yaml:2:1' "$rubble" run twice.yaml
 printf 'name: x\narena: {generate: [}\n' >broken.yaml
