@@ -128,6 +128,18 @@ TEST(LoopCloser, TellsOfEachLoopWhichTestsItStood) {
   }
 }
 
+/// A loop from an old key frame to one of a while ago that lies `by` metres off the truth.
+GraphEdge planted_loop(const KeyFrames& frames, const std::vector<TPose2D>& places, double by) {
+  GraphEdge planted;
+  planted.from = 20;
+  planted.to = frames.last() - 20;
+  planted.T_from_to = places[static_cast<std::size_t>(planted.to)] - places[20];
+  planted.T_from_to.x += by;
+  planted.information = Eigen::Vector3d(1000.0, 1000.0, 10000.0).asDiagonal();
+  planted.loop = true;
+  return planted;
+}
+
 TEST(LoopCloser, AFalseLoopPlantedByHandIsRemoved) {
   for (const double by : {0.8, 1.2, 2.5}) {
     SCOPED_TRACE(by);
@@ -135,14 +147,7 @@ TEST(LoopCloser, AFalseLoopPlantedByHandIsRemoved) {
     LoopCloser closer({}, kSurfelCell, frames);
     drive(frames, closer, 1000000000);
     const auto places = twice_round();
-    GraphEdge planted;
-    planted.from = 20;
-    planted.to = frames.last() - 20;
-    planted.T_from_to = places[static_cast<std::size_t>(planted.to)] - places[20];
-    planted.T_from_to.x += by;
-    planted.information = Eigen::Vector3d(1000.0, 1000.0, 10000.0).asDiagonal();
-    planted.loop = true;
-    frames.add_loop(planted, 0.3);
+    frames.add_loop(planted_loop(frames, places, by), 0.3);
     const std::size_t index = frames.graph().edges.size() - 1;
     closer.finish();
     EXPECT_FALSE(frames.graph().edges[index].on);
@@ -150,6 +155,36 @@ TEST(LoopCloser, AFalseLoopPlantedByHandIsRemoved) {
     EXPECT_LT(slam_test::key_frame_rmse(frames, places), 0.05);
     EXPECT_EQ(slam_test::false_loops(frames, places, 0.25), 0);
   }
+}
+
+/// Planted a while into the second round; the third key frame on is where it goes.
+TEST(LoopCloser, AFalseLoopPlantedByHandIsRemovedWhileDrivingOn) {
+  const auto places = twice_round();
+  const int planted_at = static_cast<int>(places.size()) - 60;
+  for (const double by : {0.8, 1.2, 2.5})
+    for (const Work budget : {Work{1000000}, Work{1000000000}}) {
+      SCOPED_TRACE("by " + std::to_string(by) + ", budget " + std::to_string(budget));
+      KeyFrames frames;
+      LoopCloser closer({}, kSurfelCell, frames);
+      std::size_t planted = 0;
+      int gone_after = 0;  // key frames
+      while (frames.size() < static_cast<int>(places.size())) {
+        slam_test::add_key_frame(frames, ring_corridor(), places, kBend, RobotModel());
+        if (frames.last() == planted_at) {
+          planted = frames.graph().edges.size();
+          frames.add_loop(planted_loop(frames, places, by), 0.3);
+        }
+        closer.look();
+        Work left = budget;
+        closer.work(left);
+        if (frames.last() >= planted_at && frames.graph().edges[planted].on) ++gone_after;
+      }
+      EXPECT_FALSE(frames.graph().edges[planted].on);
+      EXPECT_LE(gone_after, 6);
+      EXPECT_GE(closer.counts().removed, 1u);
+      EXPECT_LT(slam_test::key_frame_rmse(frames, places), 0.06);
+      EXPECT_EQ(slam_test::false_loops(frames, places, 0.25), 0);
+    }
 }
 
 /// Adds the next key frame of a robot whose wheels spun by `slip` between walls that did not tell.
