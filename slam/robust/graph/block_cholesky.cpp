@@ -133,7 +133,7 @@ void BlockCholesky::eliminate(int row, Work& work) {
     ++end;
   }
   const Eigen::LLT<Block> llt(D);
-  failed_ = llt.info() != Eigen::Success;
+  failed_ = llt.info() != Eigen::Success || !D.allFinite();  // NaN is no reason for LLT
   D_inverse_[at(row)] = llt.solve(Block::Identity());
 }
 

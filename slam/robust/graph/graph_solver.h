@@ -28,6 +28,8 @@ class GraphSolver {
   bool running() const { return running_; }
   /// Goes on until the budget is spent; returns whether more is needed.
   bool advance(Work& budget);
+  /// Whether the last step could be made: its system was positive definite.
+  bool solved() const { return laid_out_ && factor_.factorised(); }
   /// The nodes so far; those of the start of the solve.
   const std::vector<mrpt::math::TPose2D>& nodes() const { return graph_.nodes; }
   /// Covariance of the last node, in the frame of node 0, as of the last step.
@@ -51,7 +53,6 @@ class GraphSolver {
   void move_nodes(Work& budget);
   void next_phase();
   double off_walls(const GraphWalls& walls) const;
-  bool solved() const { return laid_out_ && factor_.factorised(); }
 
   PoseGraph graph_;
   std::vector<Phase> phases_;

@@ -286,8 +286,10 @@ LoopRecord& LoopCloser::record_of(const Task& task) { return task.kind == Kind::
 void LoopCloser::verify(const Task& task, const TPose2D& start, Work& budget) {
   const bool near = task.kind == Kind::Near;
   Work used = 0;
-  const ScanFit fit = fit_scan(old_surfels_, points_, start, {start, 1e-3 * Eigen::Matrix3d::Identity()},
-                               near ? near_fit_ : wide_fit_, &used);
+  ScanFitConfig config = near ? near_fit_ : wide_fit_;
+  if (!near) config.first_radius = std::max(config.first_radius, correlator_.least_radius());
+  const ScanFit fit =
+      fit_scan(old_surfels_, points_, start, {start, 1e-3 * Eigen::Matrix3d::Identity()}, config, &used);
   budget -= used;
   LoopRecord& record = record_of(task);
   record.inliers = fit.inliers;
@@ -497,7 +499,7 @@ void LoopCloser::take_solution(Work& budget) {
   ++counts_.solved;
   frames_.move(solver_.nodes());
   Work used = 0;
-  covariance_ = solver_.covariance_of_last(&used);
+  if (solver_.solved()) covariance_ = solver_.covariance_of_last(&used);
   budget -= used;
   covariance_frame_ = static_cast<int>(solver_.nodes().size()) - 1;
   if (remove_worst_loop(Suspects::Some, budget))

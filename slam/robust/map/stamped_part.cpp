@@ -28,13 +28,14 @@ double length_for(const std::vector<double>& lengths, double area, double beam_w
 }  // namespace
 
 void cut_to(const StampedPart& part, double resolution, ScanPoints& points) {
-  if (points.rays.empty() || !(points.beam_width > 0.0)) return;
+  if (points.rays.empty()) return;
   std::vector<double> lengths;
   for (const ScanRay& ray : points.rays) lengths.push_back(distance(ray.end, points.origin));
   std::vector<double> ascending = lengths;
   std::sort(ascending.begin(), ascending.end());
-  const double most =
-      std::min(part.reach * resolution, length_for(ascending, part.cells * resolution * resolution, points.beam_width));
+  double most = part.reach * resolution;
+  if (points.beam_width > 0.0)
+    most = std::min(most, length_for(ascending, part.cells * resolution * resolution, points.beam_width));
   for (std::size_t i = 0; i < lengths.size(); ++i) {
     if (lengths[i] <= most) continue;
     ScanRay& ray = points.rays[i];

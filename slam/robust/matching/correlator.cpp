@@ -31,6 +31,7 @@ constexpr std::size_t kSafe = 4;        ///< ... so that so many of them add up 
 constexpr std::size_t kSafeSums = 256;  ///< bytes whose sum fits in 16 bits
 constexpr double kMostCells = 2.4e6;    ///< of a raster, but for its border: the widest hall measured has 2.3 million
 constexpr double kCoarseCells = 1.2e6;  ///< of one that would have more
+constexpr double kApartCells = 2.5;     ///< places that are closer are one peak of the raster
 constexpr double kLeastBlur = 1.0;      ///< of a raster that is coarser than asked for, in its cells
 constexpr Work kCellsPerWork = 2;       ///< of pooling a raster
 constexpr Work kWorkPerSurfel = 30;
@@ -470,7 +471,9 @@ TPose2D CorrelativeSearch::pose_of(const Node& node) const {
 }
 
 bool CorrelativeSearch::excluded(const TPose2D& pose) const {
-  return exclusion_ && length(pose.x - exclusion_->pose.x, pose.y - exclusion_->pose.y) < exclusion_->distance &&
+  if (!exclusion_) return false;
+  const double apart = std::max(exclusion_->distance, kApartCells * target_->resolution());
+  return length(pose.x - exclusion_->pose.x, pose.y - exclusion_->pose.y) < apart &&
          std::abs(wrap_angle(pose.phi - exclusion_->pose.phi)) < exclusion_->angle;
 }
 

@@ -33,6 +33,8 @@ class Correlator {
   void build(const std::vector<Surfel>& surfels, double resolution, double blur, Work* work = nullptr);
 
   double resolution() const { return resolution_; }
+  /// Whoever fits what a search found begins at least so far around it [m]: what is found is a cell of the raster.
+  double least_radius() const { return 2.0 * resolution_; }
   double coarser() const { return coarser_; }
   /// Of a point; may lie outside the raster.
   Cell cell(float x, float y) const {
@@ -88,7 +90,7 @@ struct SearchWindow {
   double angle = 0.1;     ///< [rad]
 };
 
-/// Poses that do not count: those close to one.
+/// Poses that do not count: those close to one, or next to it on a coarse raster.
 struct SearchExclusion {
   mrpt::math::TPose2D pose;
   double distance = 0.45;  ///< [m]

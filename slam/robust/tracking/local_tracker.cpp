@@ -46,9 +46,9 @@ constexpr double kHeldTime = 0.95;      ///< ... and so long [s]
 constexpr double kWorthALeap = 0.25;    ///< a level scan that loses so many inliers by staying is believed at once
 constexpr double kFirm = 100.0;         ///< times the odometry's information, where a looser prior leaps as well
 
-ScanFitConfig tight() {
+ScanFitConfig tight(const Correlator& found_by) {
   ScanFitConfig config;
-  config.first_radius = 0.2;
+  config.first_radius = std::max(0.2, found_by.least_radius());
   return config;
 }
 
@@ -280,7 +280,7 @@ void LocalTracker::doubt_odometry(const KeyFrames& frames, const Cloud& cloud, c
     const auto found = look_around(cloud, window, kLeastScore, 1.0, work);
     if (!found) continue;
     const PosePrior about{*centre, loose.information};
-    const ScanFit other = fit_scan(surfels_, points_, found->pose, about, tight(), work);
+    const ScanFit other = fit_scan(surfels_, points_, found->pose, about, tight(correlator_), work);
     if (other.inliers > fit.inliers + 0.03) fit = other;
   }
   if (fit.inliers < config_.lost_inliers) {
@@ -319,7 +319,7 @@ std::optional<ScanFit> LocalTracker::any_heading(const Cloud& cloud, const PoseP
   const auto runner_up = look_elsewhere(kRunnerUp * found->score, SearchExclusion{found->pose}, work);
   if (runner_up) return std::nullopt;
   const PosePrior anywhere{found->pose, Eigen::Matrix3d::Identity()};
-  return fit_scan(surfels_, points_, found->pose, anywhere, tight(), work);
+  return fit_scan(surfels_, points_, found->pose, anywhere, tight(correlator_), work);
 }
 
 }  // namespace rubble::slam

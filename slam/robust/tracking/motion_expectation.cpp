@@ -50,8 +50,8 @@ void MotionExpectation::hear(const robot::Odometry& report, Stamp now) {
   robot::Odometry smooth = report;
   if (!odometry_.empty()) {
     const TPose2D step = report.pose - odometry_.pose_at(odometry_.newest());
-    const double time = report.stamp - odometry_.newest();
-    const bool jump = is_jump(step, kOften * time <= scan_period_ ? time : std::max(time, scan_period_));
+    // Stamps that come bunched do not mean that the wheels were faster than they are.
+    const bool jump = is_jump(step, std::max(report.stamp - odometry_.newest(), scan_period_ / kOften));
     smooth.pose = without_jumps_.pose_at(odometry_.newest()) + (jump ? TPose2D() : step);
     if (jump) last_jump_ = report.stamp;
   }

@@ -10,8 +10,9 @@
 
 namespace rubble::slam {
 
-/// Tells a scanner that hangs: it gives out one scan again and again, with new stamps, while the wheels roll on. Of a
-/// robot that stands the same scan may come twice, and is true.
+/// Tells a scanner that hangs: it gives out one scan again and again, with new stamps, while the wheels roll on. A
+/// scanner without noise, as a simulator may have, says the same of a robot that stands, though its wheels spin: it is
+/// known by having repeated itself while they held, and having gone on when they rolled.
 class RepeatedScans {
  public:
   /// Whether `scan` is one that was seen from elsewhere. motion: from the scan before.
@@ -22,6 +23,8 @@ class RepeatedScans {
   std::vector<float> ranges_;         ///< of the last scan
   mrpt::math::TPose2D T_first_last_;  ///< how the robot moved since they were seen first, by its wheels
   bool moved_ = false;                ///< so far that they cannot be true
+  int stood_ = 0;                     ///< repeats while the wheels held
+  bool exact_ = false;                ///< the scanner has no noise: what it repeats is true
   std::uint64_t count_ = 0;
 };
 

@@ -79,5 +79,31 @@ TEST(FrozenScanner, ARobotThatStandsSeesTheSameAgain) {
   EXPECT_EQ(figure(mapper, "unseen"), 0.0);
 }
 
+/// Wheels that spin on a robot that is held: what a scanner without noise repeats is true then, and a robot that stood
+/// before has shown that it has none.
+TEST(FrozenScanner, WithoutNoiseAPinnedRobotIsNotTakenForAHungScanner) {
+  constexpr std::size_t kStood = 10;
+  constexpr double kSpin = 0.02;  // from tick to tick [m]
+  slam_test::Drive drive = round_the_room();
+  drive.truth.insert(drive.truth.begin() + static_cast<std::ptrdiff_t>(kFrozenFrom), kFrozenTo - kFrozenFrom,
+                     drive.truth[kFrozenFrom]);
+  drive.truth.insert(drive.truth.begin(), kStood, drive.truth.front());
+  for (std::size_t i = 0; i < drive.truth.size(); ++i)
+    drive.truth[i].stamp = Stamp{static_cast<std::int64_t>(i) * 100000000};
+  Ticks ticks = recorded_in_room(drive, 0.0, 1);
+  TPose2D last, spun;
+  for (std::size_t i = 0; i < ticks.size(); ++i)
+    for (robot::Odometry& report : ticks[i].odometry) {
+      const TPose2D step = i == 0 ? TPose2D() : report.pose - last;
+      last = report.pose;
+      const bool pinned = i > kStood + kFrozenFrom && i < kStood + kFrozenTo;
+      report.pose = spun = i == 0 ? report.pose : spun + step + (pinned ? TPose2D(kSpin, 0.0, 0.0) : TPose2D());
+    }
+  RobustMapper mapper(RobotModel(), {}, 1);
+  const auto o = slam_test::play(mapper, ticks, slam_test::furnished_room(), drive.truth);
+  EXPECT_LT(o.rmse, 0.02);
+  EXPECT_EQ(figure(mapper, "scans_repeated"), 0.0);
+}
+
 }  // namespace
 }  // namespace rubble::slam

@@ -158,6 +158,11 @@ TEST(BlockCholesky, AMatrixThatIsNotPositiveDefiniteIsTold) {
   EXPECT_FALSE(factor.factorised());
   factor.clear();
   for (int node = 0; node < 3; ++node) factor.diagonal(node) = Eigen::Matrix3d::Identity();
+  factor.between(places[1])(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(factor.factorise(budget));
+  EXPECT_FALSE(factor.factorised()) << "nor is one with numbers that are none";
+  factor.clear();
+  for (int node = 0; node < 3; ++node) factor.diagonal(node) = Eigen::Matrix3d::Identity();
   factor.between(places[0]) = 0.5 * Eigen::Matrix3d::Identity();
   EXPECT_TRUE(factor.factorise(budget));
   EXPECT_TRUE(factor.factorised()) << "what failed is forgotten";
