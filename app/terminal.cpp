@@ -180,7 +180,7 @@ int show(const scenarios::RunReport& report) {
   if (score.value("map_doubted", 0.0) > 0.0)
     print_row("DOUBTFUL MAP", score["frames_doubled"].dump() + " of " + score["key_frames"].dump() +
                                   " key frames lie on top of another place, " + score["scans_unfit"].dump() +
-                                  " scans fit nothing mapped: the robot lost its place");
+                                  " scans fit nothing mapped: the robot may have lost its place");
   for (const auto& broken : report.broken) print_row("NOT AS EXPECTED", broken);
   print_row("folder", report.folder);
   if (!report.failure.empty()) tell(report.failure);

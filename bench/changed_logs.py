@@ -620,7 +620,12 @@ def main():
     parser.add_argument("--seed", type=int, default=1, help="of 'random'")
     parser.add_argument("--relations", type=pathlib.Path, help="of LOG")
     arguments = parser.parse_args()
-    log = read_log(arguments.log)
+    if not arguments.range > 0:
+        parser.error("--range: give metres above 0")
+    try:
+        log = read_log(arguments.log)
+    except (OSError, EOFError, zlib.error) as error:
+        sys.exit(f"{arguments.log}: cannot be read whole: {error}")
     arguments.out.mkdir(parents=True, exist_ok=True)
     truth = arguments.log.parent / "truth.tum"
     variants = {"unchanged": lambda: log, "mirrored": log.mirrored,

@@ -75,11 +75,11 @@ int benchmark(const BenchmarkArguments& arguments) {
   if (!any)
     throw InputError(list.path +
                      ": none of its logs and scenarios is there; lay them beside the list, or give their "
-                     "folder with --data");
+                     "folder with --data (the list's first lines may say where they come from)");
   if (gone > 0)
     tell(std::to_string(gone) + " of " + std::to_string(result.rows.size()) +
          " cases were left out, as what they name is not there; give the folder of the logs with --data "
-         "(scenarios/benchmark.yaml says where public ones are)");
+         "(the list's first lines may say where they come from)");
   return failed ? kFailed : kOk;
 }
 

@@ -276,14 +276,14 @@ std::string knows_no_place_in(const slam::MapBase& base, bool torn_log) {
          " a map of where it drove";
 }
 
-/// "1.23, -0.45 m, heading 90 deg, found at 12.3 s" on the run's clock
+/// "1.23, -0.45 m, heading 90 deg, found at 12.3 s of its clock": the log's
 std::string place_found(const slam::Mapper& mapper) {
   if (mapper.live_trajectory().empty()) return "not found";
   const char* const given_up = knows_no_place(mapper) ? ", and given up again" : "";
   const StampedPose& first = mapper.live_trajectory().front();
   std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), "%.2f, %.2f m, heading %.0f deg, found at %.1f s%s", first.pose.x,
-                first.pose.y, rad_to_deg(first.pose.phi), first.stamp.seconds(), given_up);
+  std::snprintf(text.data(), text.size(), "%.2f, %.2f m, heading %.0f deg, found at %.1f s of its clock%s",
+                first.pose.x, first.pose.y, rad_to_deg(first.pose.phi), first.stamp.seconds(), given_up);
   return text.data();
 }
 

@@ -93,6 +93,14 @@ Getter of_relations(Read read) {
   return [read](const Evidence& e) { return e.relations ? Value(std::invoke(read, *e.relations)) : Value(); };
 }
 
+/// An error of relations; of none there is no mean.
+template <class Read>
+Getter of_compared(Read read) {
+  return [read](const Evidence& e) {
+    return e.relations && e.relations->relations > 0 ? Value(std::invoke(read, *e.relations)) : Value();
+  };
+}
+
 template <class Read>
 Getter of_machine(Read read) {
   return [read](const Evidence& e) { return e.machine ? Value(std::invoke(read, *e.machine)) : Value(); };
@@ -310,15 +318,15 @@ std::vector<Figure> make_table() {
        "pairs of places whose relation is known"},
       {"relations_missing", "relations outside the time", "", 0, kNone, 0.0, kSpecial, of_relations(&R::missing),
        "not compared: the estimate has no pose then"},
-      {"relation_m", "error of a relation", "m", 4, kNone, 0.0, kSpecial | kShown, of_relations(&R::mean_m),
+      {"relation_m", "error of a relation", "m", 4, kNone, 0.0, kSpecial | kShown, of_compared(&R::mean_m),
        "how far the estimate has one of a pair from where the other sees it, in the mean"},
-      {"relation_std_m", "its standard deviation", "m", 4, kNone, 0.0, kSpecial, of_relations(&R::std_m),
+      {"relation_std_m", "its standard deviation", "m", 4, kNone, 0.0, kSpecial, of_compared(&R::std_m),
        "of that distance"},
-      {"relation_m2", "its mean square", "m2", 4, kNone, 0.0, kSpecial, of_relations(&R::mean_m2), "of that distance"},
+      {"relation_m2", "its mean square", "m2", 4, kNone, 0.0, kSpecial, of_compared(&R::mean_m2), "of that distance"},
       {"relation_deg", "angle of a relation off by", "deg", 4, kNone, 0.0, kSpecial | kShown,
-       of_relations([](const R& r) { return rad_to_deg(r.mean_rad); }), "the same in angle, in the mean"},
+       of_compared([](const R& r) { return rad_to_deg(r.mean_rad); }), "the same in angle, in the mean"},
       {"relation_std_deg", "standard deviation of the angle", "deg", 4, kNone, 0.0, kSpecial,
-       of_relations([](const R& r) { return rad_to_deg(r.std_rad); }), "of that angle"},
+       of_compared([](const R& r) { return rad_to_deg(r.std_rad); }), "of that angle"},
       {"bad_packets", "damaged packets", "", 0, kNone, 0.0, kSpecial, of_devices(&DeviceFigures::bad_packets)},
       {"base_jumps", "jumps of the base's odometry", "", 0, kNone, 0.0, kSpecial,
        of_devices(&DeviceFigures::odometry_jumps)},
