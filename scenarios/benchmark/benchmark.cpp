@@ -187,6 +187,7 @@ ChildAnswer in_child(const std::function<json()>& work) {
   if (child < 0) throw RunError("a process cannot be made; close other programs and try again");
   if (child == 0) {
     close(ends[0]);
+    dup2(STDERR_FILENO, STDOUT_FILENO);  // where libraries of mappers chatter: the parent's is a table, or JSON
     json answer;
     try {
       answer = work();
