@@ -181,7 +181,8 @@ bool RobustMapper::Impl::ready(Stamp now) const {
 void RobustMapper::Impl::process(LaserScan scan) {
   const Stamp reference = scan.middle();
   ExpectedMotion motion = motion_.expect(scan);
-  if (repeated_.is_repeated(scan, motion)) scan.ranges.assign(scan.ranges.size(), LaserScan::kUnknown);
+  if (repeated_.is_repeated(scan, motion, motion_.last_step()))
+    scan.ranges.assign(scan.ranges.size(), LaserScan::kUnknown);
   Work work = 0;
   std::optional<SweepMotion> sweep = config_.deskew ? motion_.sweep(scan, motion) : std::nullopt;
   const std::optional<ScanTilt> tilt = config_.use_tilt ? tilt_of(reference, motion, &work) : std::nullopt;

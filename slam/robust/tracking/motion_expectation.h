@@ -39,6 +39,8 @@ class MotionExpectation {
 
   /// The step from scan to scan as it was found, in `time` [s]; whether it contradicts what odometry said.
   void found(const mrpt::math::TPose2D& step, double time, bool contradicted);
+  /// That of the last scan.
+  const mrpt::math::TPose2D& last_step() const { return last_step_; }
   /// A scan was dealt with.
   void scan_taken(Stamp reference);
   /// By odometry, from the last scan to `stamp`.

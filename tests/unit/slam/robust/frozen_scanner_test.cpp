@@ -79,6 +79,19 @@ TEST(FrozenScanner, ARobotThatStandsSeesTheSameAgain) {
   EXPECT_EQ(figure(mapper, "unseen"), 0.0);
 }
 
+/// Along a bare corridor a scanner without noise sees the same all the way.
+TEST(FrozenScanner, WithoutNoiseABareCorridorIsNotTakenForAHungScanner) {
+  slam_test::World corridor;
+  slam_test::add_box(corridor, -20.0, -0.6, 20.0, 0.6);
+  const slam_test::Drive drive = slam_test::drive_through({{0.0, 0.0}, {4.0, 0.0}}, 0.0);
+  RobustMapper mapper(RobotModel(), {}, 1);
+  const auto o =
+      slam_test::play(mapper, slam_test::record(corridor, drive, RobotModel(), 0.0, 0.0, 1), corridor, drive.truth);
+  EXPECT_LT(o.rmse, 0.02);
+  EXPECT_EQ(figure(mapper, "scans_repeated"), 0.0);
+  EXPECT_EQ(figure(mapper, "unseen"), 0.0);
+}
+
 /// Wheels that spin on a robot that is held: what a scanner without noise repeats is true then, and a robot that stood
 /// before has shown that it has none.
 TEST(FrozenScanner, WithoutNoiseAPinnedRobotIsNotTakenForAHungScanner) {
