@@ -166,11 +166,9 @@ constexpr const char* kNote =
     "Error: relations are mean errors between pairs of moments (Kuemmerle et al. 2009), aligned is the RMS error of "
     "the positions after the best rigid alignment with the reference that came with the log or the arena. Of several "
     "runs errors are medians, times, work and memory the largest, loops and doubts the sums, and scans/s is all scans "
-    "by all CPU "
-    "time; a map is doubted by its own mapper; false loops lead more than 0.3 m or 0.2 rad from where the reference "
-    "has the robot. Times are CPU time of "
-    "the mapper alone, of this machine; the most work of a scan is in millions of units that the mapper counts, the "
-    "same on every machine.";
+    "by all CPU time; a map is doubted by its own mapper; false loops lead more than 0.3 m or 0.2 rad from where the "
+    "reference has the robot. Times are CPU time of the mapper alone, of this machine; the most work of a scan is in "
+    "millions of units that the mapper counts, the same on every machine.";
 
 }  // namespace
 
