@@ -37,6 +37,7 @@ TEST(Figures, WhatPeopleAreShownHasAMeaning) {
   trajectories.error = TrajectoryError{2, 0.1, 0.1};
   trajectories.pieces = PieceErrors();
   trajectories.relations = RelationError();
+  trajectories.relations->relations = 1;
   for (const Figure& figure : figures())
     EXPECT_FALSE(figure.meaning.empty() && !text_of(figure, figure.get(trajectories)).empty()) << figure.key;
 }
@@ -91,11 +92,22 @@ TEST(Figures, EveryFigureHasACaseInWhichItIsKnown) {
   all.devices = DeviceFigures();
   all.pieces = PieceErrors();
   all.relations = RelationError();
+  all.relations->relations = 1;
   for (const Figure& figure : figures()) {
     const Value value = figure.get(all);
     EXPECT_FALSE(std::holds_alternative<std::monostate>(value)) << figure.key;
     EXPECT_EQ(std::holds_alternative<std::string>(value), figure.is(kText)) << figure.key;
   }
+}
+
+TEST(Figures, OfRelationsThatCouldNotBeComparedThereIsNoError) {
+  Evidence none;
+  none.relations = RelationError();
+  none.relations->missing = 3;
+  for (const Figure& figure : figures())
+    if (figure.key.rfind("relation_", 0) == 0) {
+      EXPECT_TRUE(std::holds_alternative<std::monostate>(figure.get(none))) << figure.key;
+    }
 }
 
 TEST(Figures, AMapThatWasNotPlacedShowsNothingOfTheTruth) {
