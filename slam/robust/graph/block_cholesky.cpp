@@ -35,8 +35,21 @@ std::vector<BlockCholesky::Place> BlockCholesky::analyse(int nodes, const std::v
   position_.assign(at(nodes), 0);
   const std::vector<int> order = order_of(nodes, pairs);
   for (int k = 0; k < nodes; ++k) position_[at(order[at(k)])] = k;
+  std::vector<Place> places = place_blocks(pairs);
+  grow_tree();
+  rows_.resize(at(column_starts_.back()));
+  L_.resize(at(column_starts_.back()));
+  D_inverse_.resize(at(nodes));
+  gathered_.assign(at(nodes), Block::Zero());
+  pattern_.resize(at(nodes));
+  diagonal_.resize(at(nodes));
+  between_.resize(columns_.size());
+  clear();
+  return places;
+}
 
-  // Blocks of A by row, then by column; each once.
+/// Lays out A below the diagonal by row, then by column; each block once.
+std::vector<BlockCholesky::Place> BlockCholesky::place_blocks(const std::vector<std::pair<int, int>>& pairs) {
   std::vector<std::pair<int, int>> cells;
   cells.reserve(pairs.size());
   for (const auto& [a, b] : pairs) {
@@ -46,25 +59,29 @@ std::vector<BlockCholesky::Place> BlockCholesky::analyse(int nodes, const std::v
   std::vector<std::pair<int, int>> blocks = cells;
   std::sort(blocks.begin(), blocks.end());
   blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
-  row_starts_.assign(at(nodes) + 1, 0);
+  row_starts_.assign(at(nodes()) + 1, 0);
   columns_.clear();
   for (const auto& [row, column] : blocks) {
     ++row_starts_[at(row) + 1];
     columns_.push_back(column);
   }
-  for (int k = 0; k < nodes; ++k) row_starts_[at(k) + 1] += row_starts_[at(k)];
+  for (int k = 0; k < nodes(); ++k) row_starts_[at(k) + 1] += row_starts_[at(k)];
   std::vector<Place> places;
   places.reserve(pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto found = std::lower_bound(blocks.begin(), blocks.end(), cells[k]);
     places.push_back({static_cast<int>(found - blocks.begin()), position_[at(pairs[k].first)] == cells[k].first});
   }
+  return places;
+}
 
-  // A row of L reaches the columns of its blocks in A, and from each up the tree.
-  parent_.assign(at(nodes), -1);
-  seen_in_.assign(at(nodes), -1);
-  column_starts_.assign(at(nodes) + 1, 0);
-  for (int row = 0; row < nodes; ++row) {
+/// The elimination tree, and how many blocks each column of L has: a row of L reaches the columns of its blocks in A,
+/// and from each up the tree.
+void BlockCholesky::grow_tree() {
+  parent_.assign(at(nodes()), -1);
+  seen_in_.assign(at(nodes()), -1);
+  column_starts_.assign(at(nodes()) + 1, 0);
+  for (int row = 0; row < nodes(); ++row) {
     seen_in_[at(row)] = row;
     for (int entry = row_starts_[at(row)]; entry < row_starts_[at(row) + 1]; ++entry)
       for (int column = columns_[at(entry)]; seen_in_[at(column)] != row; column = parent_[at(column)]) {
@@ -73,16 +90,7 @@ std::vector<BlockCholesky::Place> BlockCholesky::analyse(int nodes, const std::v
         seen_in_[at(column)] = row;
       }
   }
-  for (int k = 0; k < nodes; ++k) column_starts_[at(k) + 1] += column_starts_[at(k)];
-  rows_.resize(at(column_starts_.back()));
-  L_.resize(at(column_starts_.back()));
-  D_inverse_.resize(at(nodes));
-  gathered_.assign(at(nodes), Block::Zero());
-  pattern_.resize(at(nodes));
-  diagonal_.resize(at(nodes));
-  between_.resize(blocks.size());
-  clear();
-  return places;
+  for (int k = 0; k < nodes(); ++k) column_starts_[at(k) + 1] += column_starts_[at(k)];
 }
 
 void BlockCholesky::clear() {
@@ -158,7 +166,8 @@ Eigen::VectorXd BlockCholesky::solve(const Eigen::VectorXd& b) const {
 
 BlockCholesky::Block BlockCholesky::covariance(const std::vector<std::pair<int, Block>>& J, Work* work) const {
   // With y = L^-1 J^T it is y^T D^-1 y.
-  Columns y = Columns::Zero(3 * nodes(), 3);
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+  Rows y = Rows::Zero(3 * nodes(), 3);
   int first = nodes();
   for (const auto& [node, block] : J) {
     const int row = position_[at(node)];

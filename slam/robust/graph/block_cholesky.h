@@ -14,9 +14,6 @@ namespace rubble::slam {
 class BlockCholesky {
  public:
   using Block = Eigen::Matrix3d;
-  /// An n x 3 matrix, three rows a node.
-  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
-
   /// Where the block of a pair is stored.
   struct Place {
     int index = 0;
@@ -48,6 +45,8 @@ class BlockCholesky {
   Block covariance(const std::vector<std::pair<int, Block>>& J, Work* work) const;
 
  private:
+  std::vector<Place> place_blocks(const std::vector<std::pair<int, int>>& pairs);
+  void grow_tree();
   void eliminate(int row, Work& work);
 
   std::vector<int> position_;  ///< of a node, in the order of elimination

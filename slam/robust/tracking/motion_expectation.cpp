@@ -104,7 +104,7 @@ bool MotionExpectation::jumps_within(const LaserScan& scan) const {
 
 /// Where reports come much more often than scans, the step from one to the next tells sooner than that between scans. A
 /// jump that a scan lies in is one before and after it. Less than what outruns any robot may be a clock that is coarse:
-/// in logs of rare scans true steps are of 3 to 7 m/s, by their stamps.
+/// in logs of rare scans true steps are of 3 to 8 m/s, by their stamps.
 bool MotionExpectation::jumps_between_reports(Stamp reference) const {
   int steps = 0;
   bool jumps = false;

@@ -13,10 +13,11 @@
 
 namespace rubble::slam {
 
-constexpr std::size_t kInliersColumn = 0;        ///< of the diary's ScanRecords
+// Columns of the diary's ScanRecords.
+constexpr std::size_t kInliersColumn = 0;
+constexpr std::size_t kContradictionColumn = 1;  ///< zero but for a robot that is followed on a map of an earlier run
 constexpr std::size_t kBeamsColumn = 8;          ///< that returned ...
 constexpr std::size_t kRejectedColumn = 9;       ///< ... and of them those that the matching left out
-constexpr std::size_t kContradictionColumn = 1;  ///< zero but for a robot that is followed on a map of an earlier run
 
 /// What the robust mapper says of each scan.
 class ScanDiary {

@@ -96,7 +96,7 @@ TEST(MotionExpectation, AJumpIsNotBelievedWhereverInAScanItLies) {
   }
 }
 
-/// Logs of rare scans have clocks that are coarse: true steps of the wheels look like 3 to 7 m/s and rad/s there, from
+/// Logs of rare scans have clocks that are coarse: true steps of the wheels look like 3 to 8 m/s and rad/s there, from
 /// one report to the next, several of them between two scans. A step of 20 m/s is none.
 TEST(MotionExpectation, StepsOfACoarseClockAreBelieved) {
   for (const TPose2D& step : {TPose2D(0.8, 0.0, 0.0), TPose2D(0.05, 0.0, 1.06), TPose2D(2.5, 0.0, 0.0)}) {
