@@ -276,15 +276,37 @@ std::string knows_no_place_in(const slam::MapBase& base, bool torn_log) {
          " a map of where it drove";
 }
 
-/// "1.23, -0.45 m, heading 90 deg, found at 12.3 s of its clock": the log's
-std::string place_found(const slam::Mapper& mapper) {
-  if (mapper.live_trajectory().empty()) return "not found";
-  const char* const given_up = knows_no_place(mapper) ? ", and given up again" : "";
-  const StampedPose& first = mapper.live_trajectory().front();
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), "%.2f, %.2f m, heading %.0f deg, found at %.1f s of its clock%s",
-                first.pose.x, first.pose.y, rad_to_deg(first.pose.phi), first.stamp.seconds(), given_up);
+/// ", but it began at 1.23, -0.45 m, heading 90 deg, not at --start": where the mapper found it far from what was told.
+std::string other_start(const slam::Mapper& mapper, const slam::MapBase& base) {
+  constexpr double kStartAway = 0.6;    // [m]
+  constexpr double kStartTurned = 0.5;  // [rad]
+  if (!base.start || mapper.trajectory().empty()) return "";
+  const mrpt::math::TPose2D& began = mapper.trajectory().front().pose;
+  if (std::hypot(began.x - base.start->x, began.y - base.start->y) <= kStartAway &&
+      std::abs(wrap_angle(began.phi - base.start->phi)) <= kStartTurned)
+    return "";
+  std::array<char, 120> text{};
+  std::snprintf(text.data(), text.size(), ", but it began at %.2f, %.2f m, heading %.0f deg, not at --start", began.x,
+                began.y, rad_to_deg(began.phi));
   return text.data();
+}
+
+/// "1.23, -0.45 m, heading 90 deg, found at 12.3 s of its clock": the log's
+std::string place_found(const slam::Mapper& mapper, const slam::MapBase& base) {
+  const Trajectory& live = mapper.live_trajectory();
+  const bool known = !knows_no_place(mapper);
+  if (live.empty() && (!known || mapper.trajectory().empty())) return "not found";
+  const mrpt::math::TPose2D at = live.empty() ? mapper.trajectory().back().pose : live.front().pose;
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(), "%.2f, %.2f m, heading %.0f deg, ", at.x, at.y, rad_to_deg(at.phi));
+  std::string place = text.data();
+  if (live.empty()) {
+    place += "found when the log was over";
+  } else {
+    std::snprintf(text.data(), text.size(), "found at %.1f s of its clock", live.front().stamp.seconds());
+    place += text.data();
+  }
+  return place + (known ? "" : ", and given up again") + other_start(mapper, base);
 }
 
 /// Relations and other programs know the scans of a log by its own stamps.
@@ -334,7 +356,7 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   RunReport report;
   report.interrupted = end.interrupted;
   report.failure = end.failure;
-  if (options.base) report.place = place_found(core.mapper());
+  if (options.base) report.place = place_found(core.mapper(), *options.base);
   finish(report, evidence, folder, resolved, start);
   const bool placeless = knows_no_place(core.mapper());
   if (options.link_latest && !placeless) folder.link_latest(core.mapper());

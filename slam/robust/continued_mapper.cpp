@@ -18,7 +18,12 @@ using mrpt::math::TPose3D;
 
 namespace {
 
-constexpr double kMatchedPath = 1.5;   ///< of a drive that is looked for, in paths of the local map
+constexpr double kMatchedPath = 1.5;  ///< of a drive that is looked for, in paths of the local map
+constexpr double kLeastApart = 1.0;   ///< a map is looked for in another one at most each so much of its way [m] ...
+constexpr double kMostApart = 3.0;    ///< ... and at least [m]: what is matched each time goes back farther ...
+constexpr double kLooks = 30.0;       ///< ... so that a short way has about so many looks
+constexpr Work kFinishWork = 20'000'000'000;  ///< of looking for the place once more when a drive is over
+constexpr double kAroundPlace = 6.0;   ///< from a place that is believed, all key frames so far along the way [m]
 constexpr double kAnywhere = 1e3;      ///< sigma of a robot that may be anywhere [m]
 constexpr double kHeldDistance = 0.5;  ///< what holds the first key frame of a drive to the map, beside its ties [m]
 constexpr double kHeldAngle = 0.5;     ///< [rad]
@@ -92,6 +97,46 @@ GraphEdge shifted(GraphEdge edge, int by) {
   return edge;
 }
 
+/// Key frames along the way, evenly: to look from each of thousands takes minutes, and says little more.
+std::vector<int> spread(const KeyFrames& frames) {
+  std::vector<int> some;
+  if (frames.empty()) return some;
+  const double apart = std::clamp((frames[frames.last()].path - frames[0].path) / kLooks, kLeastApart, kMostApart);
+  for (int i = 0; i < frames.size(); ++i)
+    if (some.empty() || frames[i].path - frames[some.back()].path >= apart || i == frames.last()) some.push_back(i);
+  return some;
+}
+
+/// All key frames along the way around some.
+std::vector<int> around(const KeyFrames& frames, const std::vector<int>& some) {
+  std::vector<int> close;
+  for (int i = 0; i < frames.size(); ++i)
+    if (std::any_of(some.begin(), some.end(),
+                    [&](int k) { return std::abs(frames[i].path - frames[k].path) <= kAroundPlace; }))
+      close.push_back(i);
+  return close;
+}
+
+/// Where `drive` lies in the map of the finder; nothing when no places agree or `budget` is used up. First it is looked
+/// for from a few of its key frames, then from all of those near a place.
+std::optional<FoundPlace> find_in(PlaceFinder& finder, const KeyFrames& drive, Work budget,
+                                  const MergeProgress& progress = {}) {
+  std::vector<int> asked = spread(drive), placed;
+  for (const char* const what : {"looks for a place that both show", "looks closer where one may be"}) {
+    finder.begin();
+    for (std::size_t k = 0; k < asked.size() && !finder.found() && budget > 0; ++k) {
+      if (progress) progress(what, static_cast<double>(k) / static_cast<double>(asked.size()));
+      const std::uint64_t believed = finder.counts().believed;
+      finder.look(asked[k]);
+      finder.work(drive, budget);
+      if (finder.counts().believed > believed) placed.push_back(asked[k]);
+    }
+    if (finder.found()) break;
+    asked = around(drive, placed);
+  }
+  return finder.found();
+}
+
 }  // namespace
 
 KeyFrames joined(const KeyFrames& map, const KeyFrames& drive, const FoundPlace& place, double apart) {
@@ -138,16 +183,11 @@ MergedMap merged(const SavedMap& first, const SavedMap& second, const RobustConf
   };
   if (!same_mount(first.T_base_laser, second.T_base_laser)) return {MergeEnd::OtherMount, std::nullopt};
   PlaceFinder finder(first.frames, place_config(config), config.tracker.cell);
-  Work unlimited = std::numeric_limits<Work>::max();
-  for (int i = 0; i < second.frames.size() && !finder.found(); ++i) {
-    tell("looks for a place that both show", static_cast<double>(i) / second.frames.size());
-    finder.look(i);
-    finder.work(second.frames, unlimited);
-  }
-  if (!finder.found()) return {MergeEnd::NoPlace, std::nullopt};
+  const std::optional<FoundPlace> place = find_in(finder, second.frames, std::numeric_limits<Work>::max(), progress);
+  if (!place) return {MergeEnd::NoPlace, std::nullopt};
   tell("joins both", 0.0);
   SavedMap both = second;
-  both.frames = joined(first.frames, second.frames, *finder.found(), config.loop.least_path);
+  both.frames = joined(first.frames, second.frames, *place, config.loop.least_path);
   const int shift = first.frames.size();
   both.scans = first.scans;
   for (SavedScan scan : second.scans) {
@@ -267,6 +307,8 @@ void ContinuedMapper::finish() {
   if (!joined_ && !frames.empty()) {
     Work unlimited = std::numeric_limits<Work>::max();
     finder_.work(frames, unlimited);
+    // A map as large as a building takes longer to search than the robot stays where both know the ground.
+    if (!finder_.found()) find_in(finder_, frames, kFinishWork);
     if (finder_.found()) join(*finder_.found());
   }
   if (joined_) return drive_->finish();

@@ -16,7 +16,7 @@ namespace rubble::slam {
 struct PlaceConfig {
   int frames = 40;                   ///< last key frames of the drive that are matched ...
   double path = 6.0;                 ///< ... and the path they cover at most [m]
-  double least_score = 0.50;         ///< of the search
+  double least_score = 0.62;         ///< of the search; true places score 0.74 to 0.92
   double runner_up = 0.90;           ///< another place that scores so much of the best must not stand the tests
   double least_inliers = 0.80;       ///< of the fit
   double most_contradiction = 0.06;  ///< share of points seen through, either way
