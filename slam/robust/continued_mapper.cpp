@@ -176,27 +176,19 @@ KeyFrames joined(const KeyFrames& map, const KeyFrames& drive, const FoundPlace&
   return all;
 }
 
-MergedMap merged(const SavedMap& first, const SavedMap& second, const RobustConfig& config,
-                 const MergeProgress& progress) {
-  const auto tell = [&](const char* what, double share) {
-    if (progress) progress(what, share);
-  };
-  if (!same_mount(first.T_base_laser, second.T_base_laser)) return {MergeEnd::OtherMount, std::nullopt};
-  PlaceFinder finder(first.frames, place_config(config), config.tracker.cell);
-  const std::optional<FoundPlace> place = find_in(finder, second.frames, std::numeric_limits<Work>::max(), progress);
-  if (!place) return {MergeEnd::NoPlace, std::nullopt};
-  tell("joins both", 0.0);
-  SavedMap both = second;
-  both.frames = joined(first.frames, second.frames, *place, config.loop.least_path);
-  const int shift = first.frames.size();
-  both.scans = first.scans;
-  for (SavedScan scan : second.scans) {
-    scan.frame += shift;
-    both.scans.push_back(std::move(scan));
-  }
-  both.here += shift;
-  both.path += both.frames[shift].path - second.frames[0].path;
-  both.frame_covariance.setZero();
+namespace {
+
+/// Two drives as one graph, their loops closed.
+struct Agreement {
+  KeyFrames frames;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the newest key frame
+};
+
+/// Nothing when walls of one stand where the other looked through.
+std::optional<Agreement> agreed(const KeyFrames& map, const KeyFrames& drive, const FoundPlace& place,
+                                const RobustConfig& config, const MergeProgress& progress = {}) {
+  if (progress) progress("joins both", 0.0);
+  Agreement both{joined(map, drive, place, config.loop.least_path)};
   if (config.loops) {
     if (config.wall_compass) {
       WallCompass compass;
@@ -206,13 +198,36 @@ MergedMap merged(const SavedMap& first, const SavedMap& second, const RobustConf
     LoopCloser closer(config.loop, config.tracker.cell, both.frames);
     closer.begin_anew(std::nullopt);
     closer.finish();
-    both.frame_covariance = closer.covariance();
+    both.covariance = closer.covariance();
   }
-  tell("asks whether they contradict each other", 0.0);
-  const std::size_t alone = doubled_in(first.frames, config) + doubled_in(second.frames, config);
-  const auto share = static_cast<std::size_t>(kMostDoubledShare * static_cast<double>(second.frames.size()));
-  if (doubled_in(both.frames, config) > alone + std::max(kMostDoubled, share))
-    return {MergeEnd::SeenThrough, std::nullopt};
+  if (progress) progress("asks whether they contradict each other", 0.0);
+  const std::size_t alone = doubled_in(map, config) + doubled_in(drive, config);
+  const auto share = static_cast<std::size_t>(kMostDoubledShare * static_cast<double>(drive.size()));
+  if (doubled_in(both.frames, config) > alone + std::max(kMostDoubled, share)) return std::nullopt;
+  return both;
+}
+
+}  // namespace
+
+MergedMap merged(const SavedMap& first, const SavedMap& second, const RobustConfig& config,
+                 const MergeProgress& progress) {
+  if (!same_mount(first.T_base_laser, second.T_base_laser)) return {MergeEnd::OtherMount, std::nullopt};
+  PlaceFinder finder(first.frames, place_config(config), config.tracker.cell);
+  const std::optional<FoundPlace> place = find_in(finder, second.frames, std::numeric_limits<Work>::max(), progress);
+  if (!place) return {MergeEnd::NoPlace, std::nullopt};
+  std::optional<Agreement> agreement = agreed(first.frames, second.frames, *place, config, progress);
+  if (!agreement) return {MergeEnd::SeenThrough, std::nullopt};
+  SavedMap both = second;
+  both.frames = std::move(agreement->frames);
+  both.frame_covariance = agreement->covariance;
+  const int shift = first.frames.size();
+  both.scans = first.scans;
+  for (SavedScan scan : second.scans) {
+    scan.frame += shift;
+    both.scans.push_back(std::move(scan));
+  }
+  both.here += shift;
+  both.path += both.frames[shift].path - second.frames[0].path;
   return {MergeEnd::Whole, std::move(both)};
 }
 
@@ -307,9 +322,13 @@ void ContinuedMapper::finish() {
   if (!joined_ && !frames.empty()) {
     Work unlimited = std::numeric_limits<Work>::max();
     finder_.work(frames, unlimited);
-    // A map as large as a building takes longer to search than the robot stays where both know the ground.
-    if (!finder_.found()) find_in(finder_, frames, kFinishWork);
-    if (finder_.found()) join(*finder_.found());
+    std::optional<FoundPlace> place = finder_.found();
+    if (!place) {
+      // A map as large as a building takes longer to search than the robot stays where both know the ground.
+      place = find_in(finder_, frames, kFinishWork);
+      if (place && !agreed(saved_.frames, frames, *place, config_)) place.reset();
+    }
+    if (place) join(*place);
   }
   if (joined_) return drive_->finish();
   if (config_.drop_gone) map_.drop_gone();

@@ -477,6 +477,16 @@ TEST(MergedMaps, OfTwoFloorsAreRefused) {
     const MergedMap refused = merged(first, drive_in(with_another_hall(floor), kRound), config);
     EXPECT_FALSE(refused.map);
     EXPECT_EQ(refused.end, MergeEnd::SeenThrough);
+
+    // So is a drive that looks for its place only when it is over.
+    RobustConfig hurried;
+    hurried.budget_ms = 1e-3;
+    ContinuedMapper late(RobotModel(), hurried, base(encode_map(first), true));
+    const slam_test::Drive drive = slam_test::drive_through(floor.way(kRound), 0.0);
+    play(late, slam_test::record(with_another_hall(floor), drive, RobotModel(), 1.0, 0.01, seed + 50));
+    EXPECT_GE(figure(late, "places_believed"), 3.0);
+    EXPECT_EQ(figure(late, "place_known"), 0.0);
+    EXPECT_TRUE(late.saved_map() == encode_map(first));
   }
 }
 
