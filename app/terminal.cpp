@@ -177,10 +177,15 @@ int show(const scenarios::RunReport& report) {
     print_row("NOT MAPPED", std::to_string(lost) + " laser hits lay beyond the largest map (mapper.max_map_cells)");
   if (const auto dropped = score["scans_out_of_order"].get<std::uint64_t>(); dropped > 0)
     print_row("NOT MAPPED", std::to_string(dropped) + " scans were empty or not younger than the one before");
-  if (score.value("map_doubted", 0.0) > 0.0)
+  const bool turns_against = score.value("turns_against", 0.0) > 0.0;
+  if (score.value("map_doubted", 0.0) > 0.0 && !turns_against)
     print_row("DOUBTFUL MAP", score["frames_doubled"].dump() + " of " + score["key_frames"].dump() +
                                   " key frames lie on top of another place, " + score["scans_unfit"].dump() +
                                   " scans fit nothing mapped: the robot may have lost its place");
+  if (turns_against)
+    print_row("DOUBTFUL MAP",
+              "the scans turn the other way than the wheels: the laser hangs upside down (map has "
+              "--upside-down), its beams come in reverse, or the encoders are exchanged");
   for (const auto& broken : report.broken) print_row("NOT AS EXPECTED", broken);
   print_row("folder", report.folder);
   if (!report.failure.empty()) tell(report.failure);

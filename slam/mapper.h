@@ -37,8 +37,9 @@ struct MapperFigure {
   static constexpr const char* kPlaceKnown = "place_known";  ///< 1: it knows where it is on an earlier run's map
   static constexpr const char* kLoopsClosed = "loops_closed";
   static constexpr const char* kLoopsRemoved = "loops_removed";
-  static constexpr const char* kMapDoubted = "map_doubted";  ///< 1: the mapper does not believe its map
-  static constexpr const char* kMostWork = "most_work_ms";   ///< of a scan, in millions of counted units, not time
+  static constexpr const char* kMapDoubted = "map_doubted";      ///< 1: the mapper does not believe its map
+  static constexpr const char* kTurnsAgainst = "turns_against";  ///< 1: scans turn the other way than the wheels
+  static constexpr const char* kMostWork = "most_work_ms";       ///< of a scan, in millions of counted units, not time
 
   std::string key;
   double value = 0.0;

@@ -309,6 +309,15 @@ std::string place_found(const slam::Mapper& mapper, const slam::MapBase& base) {
   return place + (known ? "" : ", and given up again") + other_start(mapper, base);
 }
 
+/// The log's robot, with the laser where the user says that it sits.
+robot::RobotModel recorded_robot(const robot::ReplayRobot& robot, const RunOptions& options) {
+  robot::RobotModel model = robot.model();
+  mrpt::math::TPose3D& T = model.T_base_laser;
+  if (options.mount) T = {options.mount->x, options.mount->y, T.z, options.mount->phi, T.pitch, T.roll};
+  if (options.upside_down) T = {T.x, T.y, T.z, T.yaw, 0.0, kPi};
+  return model;
+}
+
 /// Relations and other programs know the scans of a log by its own stamps.
 void name_as_the_log_does(const RunFolder& folder, const robot::ReplayRobot& robot, const slam::Mapper& mapper) {
   const auto write = [&](const char* name, const Trajectory& trajectory) {
@@ -331,11 +340,15 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   robot::ReplayRobot robot(log);
   Scenario resolved = scenario;
   if (resolved.name == "map") resolved.name = as_file_name("map-" + std::filesystem::path(log).stem().stem().string());
+  const robot::RobotModel model = recorded_robot(robot, options);
+  resolved.robot = model;
+  if (const auto& known = robot::laser_names(); std::count(known.begin(), known.end(), model.laser.name) == 0)
+    resolved.robot.laser.name = robot::kGenericLaser;
   RunFolder folder(folder_for(options, resolved), options.replace);
   folder.write("scenario.yaml", "# rubble map " + one_line(log) + " (" + robot.format() + ")" + base_as_typed(options) +
                                     "\n" + resolved_yaml(resolved));
   folder.write("versions.json", versions().json(2) + "\n");
-  Core core(resolved, robot.model(), false, folder.path(), options.base);
+  Core core(resolved, model, false, folder.path(), options.base);
   if (!robot.reference().empty()) folder.append_truth(robot.reference());
   LoopHooks hooks = hooks_of(options);
   hooks.share = [&] { return robot.progress(); };

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <mrpt/math/TPose2D.h>
+
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +21,8 @@ struct RunOptions {
   bool record = true;                             ///< keep log.rlog (a simulated run only)
   std::shared_ptr<const slam::MapBase> base;      ///< map_log(): a map to go on with; null: an empty one
   std::string relations;                          ///< map_log(): a file of relations to be judged by; empty: none
+  std::optional<mrpt::math::TPose2D> mount;       ///< map_log(): of the laser on the robot, instead of the log's
+  bool upside_down = false;                       ///< map_log(): the laser hangs so, whatever the log says
   bool link_latest = true;                        ///< see RunFolder::link_latest()
   std::function<bool()> interrupted;              ///< asked each tick; true ends the run with its folder complete
   std::function<void(const Progress&)> progress;  ///< called a few times a second

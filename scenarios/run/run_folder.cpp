@@ -184,7 +184,7 @@ RunFolder::RunFolder(const std::string& path, bool replace, const std::string& r
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_directory(path, error))
     throw InputError(path + ": is a file; give another folder with --out");
-  fs::create_directories(path, error);
+  made_ = fs::create_directories(path, error);
   if (error) cannot_create(path, error);
   lock_.emplace(path);
   if (!fs::is_empty(path, error)) {
@@ -207,7 +207,10 @@ RunFolder::RunFolder(const std::string& path, bool replace, const std::string& r
 }
 
 RunFolder::~RunFolder() {
-  if (!keeps_unfinished_) put_back();
+  if (keeps_unfinished_) return;
+  const bool refused = !begun_ && !closed_ && !replaces_;
+  put_back();
+  if (refused) clear_away();
 }
 
 /// Renames only, so a kill loses nothing: while the older run is moved its parts are in two places, and the next
@@ -228,6 +231,18 @@ void RunFolder::set_aside(const std::vector<std::string>& old) const {
       fs::rename(name, moving / fs::path(name).filename());
   }
   fs::rename(moving, aside);
+}
+
+/// What this wrote.
+void RunFolder::clear_away() noexcept {
+  std::error_code error;
+  try {
+    for (const std::string& name : run_folder_names()) fs::remove(file(name), error);
+    fs::remove_all(file(kPartial), error);
+    if (made_) fs::remove(path_, error);
+  } catch (const std::exception&) {
+    return;
+  }
 }
 
 void RunFolder::put_back() noexcept {
@@ -269,6 +284,7 @@ void RunFolder::publish(const std::vector<std::string>& names,
 }
 
 void RunFolder::append(Growing& growing, const Trajectory& trajectory) {
+  begun_ = begun_ || !trajectory.empty();
   for (; growing.written < trajectory.size(); ++growing.written)
     growing.file << tum_line(trajectory[growing.written]) << '\n';
   growing.file.flush();
@@ -345,6 +361,7 @@ void RunFolder::close(bool whole) {
   fs::remove_all(file(kPartial), error);
   if (replaces_ && whole) fs::remove_all(file(kReplaced), error);
   replaces_ = false;
+  closed_ = true;
 }
 
 void RunFolder::link_latest(const slam::Mapper& mapper) const {

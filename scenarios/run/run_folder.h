@@ -30,7 +30,9 @@ class RunFolder {
   /// set and it is a run folder: all of its files have names that rubble gives (run_folder_names()), and none of them
   /// was read by this process. So what is read for a run is read before. Throws InputError (cannot be created, not
   /// empty). What it takes the place of waits in its `.replaced` until close() and is put back when this ends before
-  /// that; after a kill it is still there. `remedy`: what the user may do about a folder that is not empty.
+  /// that; after a kill it is still there. A new folder in which no scan was mapped before this ends without close() goes
+  /// again: the command was refused, and is given once more when it is mended. `remedy`: what the user may do about a
+  /// folder that is not empty.
   RunFolder(const std::string& path, bool replace,
             const std::string& remedy = "give another folder with --out, or --force to replace it");
 
@@ -77,6 +79,7 @@ class RunFolder {
   void append(Growing& growing, const Trajectory& trajectory);
   void set_aside(const std::vector<std::string>& old) const;
   void put_back() noexcept;
+  void clear_away() noexcept;
 
   std::string path_;
   std::optional<FolderLock> lock_;  ///< two that replace one run would take away each other's files
@@ -86,6 +89,9 @@ class RunFolder {
   std::uint64_t revision_ = 0;  ///< of the mapper, that estimate.tum shows
   bool replaces_ = false;       ///< and did not end yet
   bool keeps_unfinished_ = false;
+  bool made_ = false;   ///< the folder was not there before
+  bool begun_ = false;  ///< there are poses
+  bool closed_ = false;
 };
 
 /// `parent/name-seedN-001` with the first free number.

@@ -294,11 +294,11 @@ Eigen::Matrix3d RobustMapper::Impl::pose_covariance() const {
   return covariance;
 }
 
-/// Two places on top of each other, or a drive of which the scans did not follow one another.
+/// Two places on top of each other, or a drive of which the scans did not follow one another or the wheels.
 bool RobustMapper::Impl::is_map_doubted() const {
   const auto share = [](auto count, std::size_t all) { return static_cast<double>(count) / static_cast<double>(all); };
   return (doubled_ >= kDoubtedFrames && share(doubled_, static_cast<std::size_t>(frames_.size())) >= kDoubtedShare) ||
-         (!scans_.empty() && share(unfit_, scans_.size()) >= kDoubtedUnfit);
+         (!scans_.empty() && share(unfit_, scans_.size()) >= kDoubtedUnfit) || motion_.turns_against();
 }
 
 /// A scan that may lie anywhere spoils the map: it waits until the place is known again, but not for ever.
@@ -623,6 +623,7 @@ std::vector<MapperFigure> RobustMapper::figures() const {
           {"frames_astray", static_cast<double>(loops.astray)},
           {"frames_doubled", static_cast<double>(impl_->doubled_)},
           {"scans_unfit", static_cast<double>(impl_->unfit_)},
+          {MapperFigure::kTurnsAgainst, impl_->motion_.turns_against() ? 1.0 : 0.0},
           {MapperFigure::kMapDoubted, impl_->is_map_doubted() ? 1.0 : 0.0},
           {"graph_solved", static_cast<double>(loops.solved)},
           {"last_work_ms", static_cast<double>(impl_->last_work_) * 1e-6},

@@ -51,6 +51,19 @@ cmp -s found/map.rmap first/map.rmap || fail "--localise changed the map"
 "$rubble" map first --localise first --start 0,0,0 --out found2 >/dev/null
 cmp -s found/estimate_live.tum found2/estimate_live.tum || fail "the same again is not the same"
 
+# Where the laser sits can be told; a mount that is not the map's is refused and leaves nothing in the way.
+expect_exit 3 'was made with the laser mounted at' "$rubble" map first --continue first --laser 0.3,0,0 --out moved
+[[ ! -e moved ]] || fail "a refused command leaves a folder: $(ls -A moved)"
+"$rubble" map first --laser 0.147,0,0 --continue first --out moved >/dev/null || fail "a mount 2 mm off ended with $?"
+grep -q '^    x_m: 0.147$' moved/scenario.yaml || fail "scenario.yaml does not have the mount: $(grep -A3 laser moved/scenario.yaml)"
+"$rubble" map first --set robot.laser.x_m=0.3 --set time_limit_s=2 --out vain >/dev/null 2>err.txt || fail "vain settings ended with $?"
+grep -q -- '--set robot.laser.x_m: has no effect on a log.*--laser' err.txt && grep -q -- '--set time_limit_s: has no effect' err.txt ||
+  fail "settings without effect are not told: $(cat err.txt)"
+cmp -s vain/estimate.tum mapped/estimate.tum || fail "settings without effect have one"
+"$rubble" map first --upside-down --out wrong >table.txt || fail "--upside-down ended with $?"
+grep -q '^DOUBTFUL MAP .*the scans turn the other way than the wheels' table.txt || fail "a mirrored map is believed: $(cat table.txt)"
+json_holds wrong/score.json "j['turns_against'] == 1 and j['map_doubted'] == 1"
+
 # A log too short for its place to be found: told in one line, in the exit code, and no map or pose is made up.
 "$rubble" run s.yaml --set time_limit_s=8 --set explorer.return_home=false --out brief >/dev/null || fail "a brief run ended with $?"
 for how in --localise --continue; do

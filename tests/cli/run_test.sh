@@ -60,7 +60,7 @@ same = ('score', 'precision', 'recall', 'psi_m', 'known', 'phantom_m', 'missing_
 # Of the mapper alone: a judge does not know it.
 own = ('key_frames', 'frames_reused', 'slips', 'relocated', 'unseen', 'odometry_silent', 'scans_repeated', 'lost', 'odometry_jumps',
        'loops_searched', 'loops_ambiguous', 'loops_contradicted', 'loops_needless', 'loops_closed',
-       'loops_removed', 'near_edges', 'frames_astray', 'frames_doubled', 'scans_unfit', 'map_doubted', 'graph_solved',
+       'loops_removed', 'near_edges', 'frames_astray', 'frames_doubled', 'scans_unfit', 'turns_against', 'map_doubted', 'graph_solved',
        'last_work_ms', 'work_ms',
        'most_work_ms')
 sys.exit(0 if all(a[k] == b[k] for k in same) and [k for k in a if k not in own] == list(b) else 1)

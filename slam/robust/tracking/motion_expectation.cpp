@@ -25,7 +25,10 @@ constexpr double kNoDoubt = 0.05;
 constexpr double kLongestCarry = 0.5;  ///< motion is taken to go on for so long [s]
 constexpr double kTurnsFade = 0.45;    ///< turns of so long ago count by 1/e [s]
 constexpr double kTurning = 0.16;      ///< turns this fast tell whether wheels hold the floor [rad/s] ...
-constexpr double kHolds = 0.5;         ///< ... which they do where the robot turned by this share of them
+constexpr double kTellingTurns =
+    2.0 * kPi;                      ///< a drive that turned less does not tell whether its scans turn with it [rad]
+constexpr double kAgainst = -0.25;  ///< of the wheels' turns: scans that found less turn the other way
+constexpr double kHolds = 0.5;      ///< ... which they do where the robot turned by this share of them
 
 bool finite(const robot::Odometry& o) {
   return std::isfinite(o.pose.x) && std::isfinite(o.pose.y) && std::isfinite(o.pose.phi) && std::isfinite(o.v) &&
@@ -125,6 +128,10 @@ double MotionExpectation::in_vain(double time) const {
   return share < kHolds ? 1.0 - share : 0.0;
 }
 
+bool MotionExpectation::turns_against() const {
+  return all_turns_ >= kTellingTurns && all_turns_found_ < kAgainst * all_turns_told_;
+}
+
 /// As the last two scans were apart, for `time`.
 std::optional<TPose2D> MotionExpectation::carried(double time) const {
   if (last_step_time_ < kNoDuration || time < kNoDuration || std::max(time, last_step_time_) > kLongestCarry)
@@ -156,6 +163,9 @@ void MotionExpectation::found(const TPose2D& step, double time, bool contradicte
     const double left = std::exp(-time / kTurnsFade);
     turns_told_ = left * turns_told_ + turn_now_ * turn_now_ / time;
     turns_found_ = left * turns_found_ + turn_now_ * wrap_angle(step.phi) / time;
+    all_turns_ += std::abs(turn_now_);
+    all_turns_told_ += turn_now_ * turn_now_;
+    all_turns_found_ += turn_now_ * wrap_angle(step.phi);
   }
   doubt_ = contradicted ? 1.0 : doubt_ < kNoDoubt ? 0.0 : kForgiving * doubt_;
 }

@@ -53,6 +53,9 @@ class MotionExpectation {
 
   std::uint64_t jumps() const { return jumps_; }    ///< steps of the odometry that no robot can make
   std::uint64_t silent() const { return silent_; }  ///< scans without odometry around them
+  /// Whether the scans of the whole drive turned the other way than the wheels told: a laser that hangs upside down
+  /// unknown to the mapper, or encoders exchanged. The map of such a drive may look like one and is none.
+  bool turns_against() const;
 
  private:
   bool jumps_within(const robot::LaserScan& scan) const;
@@ -77,6 +80,10 @@ class MotionExpectation {
   // Of the turns of the last moments, fading, by their rates, so that it does not matter how often a scanner scans.
   double turns_told_ = 0.0;   ///< squares [rad^2/s]
   double turns_found_ = 0.0;  ///< products with what the scans said of them [rad^2/s]
+  // Of the whole drive.
+  double all_turns_ = 0.0;        ///< told [rad]
+  double all_turns_told_ = 0.0;   ///< squares [rad^2]
+  double all_turns_found_ = 0.0;  ///< products with what the scans said of them [rad^2]
   std::uint64_t jumps_ = 0;
   std::uint64_t silent_ = 0;
 };

@@ -440,6 +440,9 @@ TEST(MergedMaps, LieInOneFrame) {
     const double way = other.frames[other.frames.last()].path;
     EXPECT_GE(shares.size(), static_cast<std::size_t>(0.3 * way)) << "told at each look";
     EXPECT_LE(shares.size(), static_cast<std::size_t>(std::max(way, 33.0))) << "looks along " << way << " m";
+    SavedMap measured_anew = b;
+    measured_anew.T_base_laser.x += 2e-3;
+    EXPECT_EQ(merged(a, measured_anew, config).end, MergeEnd::Whole);
     SavedMap tilted = b;
     tilted.T_base_laser.pitch += 0.1;
     EXPECT_EQ(merged(a, tilted, config).end, MergeEnd::OtherMount);
