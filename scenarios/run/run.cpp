@@ -267,8 +267,18 @@ bool knows_no_place(const slam::Mapper& mapper) {
   });
 }
 
+/// Of the scans, those whose place was known at once, in whole per cent.
+int share_placed(const slam::Mapper& mapper) {
+  const std::size_t all = mapper.scan_records() == nullptr ? 0 : mapper.scan_records()->stamps.size();
+  return all == 0 ? 0 : static_cast<int>(100 * mapper.live_trajectory().size() / all);
+}
+
 /// The line for a robot that knows no place, with what may help beyond what was given.
-std::string knows_no_place_in(const slam::MapBase& base, bool torn_log) {
+std::string knows_no_place_in(const slam::Mapper& mapper, const slam::MapBase& base, bool torn_log) {
+  if (!mapper.live_trajectory().empty())
+    return "the robot was on the map " + base.name + " for " + std::to_string(share_placed(mapper)) +
+           " % of its scans and ended where it does not know its place: it left what that map shows, or was carried "
+           "off; --continue adds the ground that is missing";
   const char* const log = torn_log ? "the whole log" : "a longer log";
   return "the robot does not know its place in " + base.name + ": " +
          (base.start ? std::string("check --start, or give ") + log + " or"
@@ -291,7 +301,7 @@ std::string other_start(const slam::Mapper& mapper, const slam::MapBase& base) {
   return text.data();
 }
 
-/// "1.23, -0.45 m, heading 90 deg, found at 12.3 s of its clock": the log's
+/// "1.23, -0.45 m, heading 90 deg, found 12.3 s after the first scan"
 std::string place_found(const slam::Mapper& mapper, const slam::MapBase& base) {
   const Trajectory& live = mapper.live_trajectory();
   const bool known = !knows_no_place(mapper);
@@ -303,7 +313,9 @@ std::string place_found(const slam::Mapper& mapper, const slam::MapBase& base) {
   if (live.empty()) {
     place += "found when the log was over";
   } else {
-    std::snprintf(text.data(), text.size(), "found at %.1f s of its clock", live.front().stamp.seconds());
+    const slam::ScanRecords* scans = mapper.scan_records();
+    const Stamp first = scans == nullptr || scans->stamps.empty() ? live.front().stamp : scans->stamps.front();
+    std::snprintf(text.data(), text.size(), "found %.1f s after the first scan", live.front().stamp - first);
     place += text.data();
   }
   return place + (known ? "" : ", and given up again") + other_start(mapper, base);
@@ -378,7 +390,7 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
                             "; give those of the same log");
   // A run that was cut short had no time to find it.
   if (placeless && !end.interrupted && end.failure.empty())
-    report.broken.push_back(knows_no_place_in(*options.base, robot.was_torn()));
+    report.broken.push_back(knows_no_place_in(core.mapper(), *options.base, robot.was_torn()));
   return report;
 }
 

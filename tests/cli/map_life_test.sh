@@ -82,10 +82,10 @@ done
 [[ $? == 1 ]] && grep -q 'NOT AS EXPECTED .*does not know its place .*: check --start, or give a longer log or' table.txt ||
   fail "a start that does not hold is not told: $(cat table.txt)"
 "$rubble" map first --localise first --start 3,3,90 --out elsewhere >table.txt || fail "a wrong --start ended with $?: $(cat table.txt)"
-grep -q 'place in the map .*found at .*, but it began at -\?0\.0[0-9], -\?0\.0[0-9] m, heading -\?[01] deg, not at --start$' table.txt ||
+grep -q 'place in the map .*found .*, but it began at -\?0\.0[0-9], -\?0\.0[0-9] m, heading -\?[01] deg, not at --start$' table.txt ||
   fail "a wrong --start is not told: $(cat table.txt)"
 "$rubble" map first --localise first --start 0.2,0,0 --out there >table.txt
-grep -q 'place in the map .*found at [0-9.]* s of its clock$' table.txt || fail "a right --start is doubted: $(cat table.txt)"
+grep -q 'place in the map .*found [0-9.]* s after the first scan$' table.txt || fail "a right --start is doubted: $(cat table.txt)"
 head -c "$(($(stat -c %s brief/log.rlog) - 100))" brief/log.rlog >torn.rlog
 "$rubble" map torn.rlog --localise first --out torn >table.txt
 [[ $? == 1 ]] && grep -q 'NOT AS EXPECTED .*does not know its place .*: give --start, the whole log, or' table.txt ||
