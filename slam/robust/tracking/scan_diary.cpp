@@ -7,6 +7,15 @@
 
 namespace rubble::slam {
 
+namespace {
+
+double correlation(const Eigen::Matrix3d& covariance, int a, int b) {
+  const double variances = covariance(a, a) * covariance(b, b);
+  return variances > 0.0 ? covariance(a, b) / std::sqrt(variances) : 0.0;
+}
+
+}  // namespace
+
 ScanDiary::ScanDiary()
     : records_{{"inliers",
                 "contradiction",
@@ -22,6 +31,9 @@ ScanDiary::ScanDiary()
                 "sigma_x_m",
                 "sigma_y_m",
                 "sigma_heading_deg",
+                "rho_x_y",
+                "rho_x_heading",
+                "rho_y_heading",
                 "key_frames",
                 "loops_searched",
                 "loops_ambiguous",
@@ -54,6 +66,9 @@ void ScanDiary::write(const Entry& entry, const LoopCounts& loops) {
                              std::sqrt(entry.covariance(0, 0)),
                              std::sqrt(entry.covariance(1, 1)),
                              rad_to_deg(std::sqrt(entry.covariance(2, 2))),
+                             correlation(entry.covariance, 0, 1),
+                             correlation(entry.covariance, 0, 2),
+                             correlation(entry.covariance, 1, 2),
                              static_cast<double>(entry.key_frames),
                              static_cast<double>(loops.searched),
                              static_cast<double>(loops.ambiguous),
