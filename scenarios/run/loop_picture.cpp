@@ -25,6 +25,7 @@ using LoopInk = cv::Vec3b;  ///< blue, green, red
 constexpr int kTestsHeight = 180;  ///< [pixels]
 constexpr int kTestsLeft = 50, kTestsRight = 20, kTestsTop = 34, kTestsBelow = 44;
 constexpr int kLeastTests = 700;  ///< width of the picture [pixels]
+constexpr int kThickWall = 3;     ///< of the walls where a cell is a pixel [pixels]
 constexpr double kLoopRim = 0.5;  ///< around all that is known [m]
 const LoopInk kGround(255, 255, 255), kDark(226, 226, 226), kWall(130, 100, 70), kWay(200, 170, 190);
 
@@ -56,12 +57,17 @@ class Ground {
   explicit Ground(const slam::CountMap& map) : frame_(known_frame(map)), scale_(pixels_per_cell(frame_)) {
     const OccupancyGrid known = map.classify();
     cv::Mat cells(frame_.height, frame_.width, CV_8UC3, cv::Scalar(kDark));
+    cv::Mat walls(cells.size(), CV_8UC1, cv::Scalar(0));
     for (int y = 0; y < frame_.height; ++y)
       for (int x = 0; x < frame_.width; ++x) {
         const Occupancy here = occupancy_at(known, frame_.centre({x, y}));
         if (here == Occupancy::Unknown) continue;
-        cells.at<cv::Vec3b>(frame_.height - 1 - y, x) = here == Occupancy::Occupied ? kWall : kGround;
+        cells.at<cv::Vec3b>(frame_.height - 1 - y, x) = kGround;
+        if (here == Occupancy::Occupied) walls.at<std::uint8_t>(frame_.height - 1 - y, x) = 255;
       }
+    // A building is looked at scaled down, where lines of one pixel vanish.
+    if (scale_ == 1) cv::dilate(walls, walls, cv::Mat::ones(kThickWall, kThickWall, CV_8UC1));
+    cells.setTo(cv::Scalar(kWall), walls);
     cv::resize(cells, picture_, {}, scale_, scale_, cv::INTER_NEAREST);
   }
 

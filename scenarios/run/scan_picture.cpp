@@ -60,6 +60,7 @@ const std::vector<Panel> kPanels = {
     {"work for the scan, counted, not timed", "ms", {"work_ms"}},
     {"uncertainty of the place", "m, 1 sigma", {"sigma_x_m", "sigma_y_m"}},
     {"uncertainty of the heading", "deg, 1 sigma", {"sigma_heading_deg"}},
+    {"how these uncertainties go together", "correlation", {"rho_x_y", "rho_x_heading", "rho_y_heading"}, 1.0, 1.0},
     {"size of the graph, and places looked at for loops",
      "count so far",
      {"key_frames", "near_edges", "loops_searched"},

@@ -119,13 +119,18 @@ TEST_F(RunFolderFiles, LatestIsTheLastRunThatPlacedAScan) {
   const fs::path link = path("runs/latest");
   ToldMapper mapper, blind;
   mapper.see(0.0, 1.0);
-  RunFolder(path("runs/first"), false).link_latest(mapper);
+  const auto end_run = [&](const std::string& name, const slam::Mapper& of) {
+    RunFolder folder(path(name), false);
+    folder.close();
+    folder.link_latest(of);
+  };
+  end_run("runs/first", mapper);
   EXPECT_EQ(fs::read_symlink(link), "first");
-  RunFolder(path("runs/second"), false).link_latest(blind);
+  end_run("runs/second", blind);
   EXPECT_EQ(fs::read_symlink(link), "first") << "nothing can be done with the second";
-  RunFolder(path("runs/third/"), false).link_latest(mapper);
+  end_run("runs/third/", mapper);
   EXPECT_EQ(fs::read_symlink(link), "third");
-  RunFolder(path("elsewhere/fourth"), false).link_latest(mapper);
+  end_run("elsewhere/fourth", mapper);
   EXPECT_EQ(fs::read_symlink(link), "third");
   EXPECT_FALSE(fs::exists(fs::symlink_status(path("elsewhere/latest"))));
 
@@ -134,12 +139,32 @@ TEST_F(RunFolderFiles, LatestIsTheLastRunThatPlacedAScan) {
   EXPECT_EQ(left, 3u) << "the new link was made beside the old one";
   fs::remove(link);
   std::ofstream(link) << "mine";
-  RunFolder(path("runs/fifth"), false).link_latest(mapper);
+  end_run("runs/fifth", mapper);
   EXPECT_EQ(read(link.string()), "mine");
 }
 
+/// A command that is refused is given once more when it is mended, into the same folder.
+TEST_F(RunFolderFiles, ARunThatNeverBeganLeavesNothing) {
+  namespace fs = std::filesystem;
+  ToldMapper mapper;
+  { RunFolder(path("new/run"), false).write("scenario.yaml", "name: x"); }
+  EXPECT_FALSE(fs::exists(path("new/run")));
+  fs::create_directory(path("mine"));
+  { RunFolder(path("mine"), false).write("scenario.yaml", "name: x"); }
+  EXPECT_TRUE(fs::is_directory(path("mine"))) << "it was there before";
+  EXPECT_TRUE(fs::is_empty(path("mine")));
+  {
+    const RunFolder folder(path("shared"), false);
+    std::ofstream(path("shared/notes.txt")) << "mine";
+  }
+  EXPECT_EQ(read(path("shared/notes.txt")), "mine");
+  mapper.see(0.0, 1.0);
+  { RunFolder(path("begun"), false).append_estimate(mapper); }
+  EXPECT_EQ(read(path("begun/estimate.tum")), text_of(mapper.now)) << "what was mapped is kept";
+}
+
 TEST_F(RunFolderFiles, OnlyWhatARunWritesIsReplaced) {
-  { const RunFolder made(path("run"), false); }
+  RunFolder(path("run"), false).close();
   const std::string run = path("run") + "/";
   for (const std::string name : {"thesis.txt", "map.tif.bak", "sub"}) {
     if (name == "sub")
