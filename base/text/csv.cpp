@@ -9,9 +9,19 @@ namespace {
 
 bool is_one_of(char c, std::string_view letters) { return letters.find(c) != std::string_view::npos; }
 
-/// Digits with a decimal point at most, behind one sign.
+bool is_digits(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// Digits with a decimal point at most and an exponent, behind one sign.
 bool is_signed_number(std::string_view text) {
-  const std::string_view digits = text.substr(1);
+  const std::size_t exponent = text.find_first_of("eE");
+  if (exponent != std::string_view::npos) {
+    std::string_view power = text.substr(exponent + 1);
+    if (!power.empty() && is_one_of(power.front(), "+-")) power.remove_prefix(1);
+    if (!is_digits(power)) return false;
+  }
+  const std::string_view digits = text.substr(1, exponent == std::string_view::npos ? exponent : exponent - 1);
   const std::size_t point = digits.find('.');
   return digits.find_first_not_of("0123456789.") == std::string_view::npos &&
          digits.find_first_not_of('.') != std::string_view::npos &&

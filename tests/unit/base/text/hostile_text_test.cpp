@@ -38,9 +38,10 @@ TEST(FileName, AnyTextBecomesOneThatIsAllowed) {
 
 TEST(Formula, NothingThatASpreadsheetRuns) {
   for (const char* text : {"=1+1", "@SUM(A1)", "+cmd|' /C calc'!A0", "-cmd", "\t=1", "-", "-2+3+cmd|'calc'!A0",
-                           "-1+HYPERLINK(\"x\")", "+1.2.3", "-."})
+                           "-1+HYPERLINK(\"x\")", "+1.2.3", "-.", "-1e", "-e5", "-1e5+A1", "-1e-", "+1E2E3"})
     EXPECT_EQ(not_a_formula(text), std::string("'") + text);
-  for (const char* text : {"-5", "+3.5", "team", "-.5", "", "a=b"}) EXPECT_EQ(not_a_formula(text), text);
+  for (const char* text : {"-5", "+3.5", "team", "-.5", "", "a=b", "-5.049117803694082e-05", "+2E7", "-1e+3"})
+    EXPECT_EQ(not_a_formula(text), text);
 }
 
 TEST(OneLine, NoByteThatATerminalObeys) {
