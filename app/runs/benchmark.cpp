@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -8,6 +9,7 @@
 #include "app/scenario_options.h"
 #include "app/terminal.h"
 #include "base/error.h"
+#include "base/text/number_text.h"
 #include "base/text/text_file.h"
 #include "base/text/utf8.h"
 #include "base/text/words.h"
@@ -44,6 +46,31 @@ void keep_only(BenchmarkList& list, const std::vector<std::string>& names) {
   list.mappers = kept;
 }
 
+std::string progress_text(const BenchmarkProgress& p) {
+  std::string text =
+      "case " + std::to_string(p.number) + " of " + std::to_string(p.cases) + ": " + p.name + ", " + p.mapper;
+  if (p.seeds > 1 && p.seed > 0) text += ", seed " + std::to_string(p.seed) + " of " + std::to_string(p.seeds);
+  return text;
+}
+
+/// On a terminal, where each line takes the place of the one before.
+void show_progress(const BenchmarkProgress& p) {
+  const std::string share = p.share ? "  " + std::to_string(static_cast<int>(std::round(100.0 * *p.share))) + " %" : "";
+  std::fprintf(stderr, "\r\033[K%s", one_line(progress_text(p) + share).c_str());
+  std::fflush(stderr);
+}
+
+/// Elsewhere lines stay: one for each mapper that is through with a case.
+void tell_finished(const BenchmarkProgress& p) {
+  if (p.finished == nullptr) return;
+  const BenchmarkResult& result = *p.finished;
+  std::string end = "done";
+  if (result.error_m) end = number_text(std::round(1e4 * *result.error_m) / 1e4) + " m off";
+  if (!result.failure.empty()) end = (result.stopped ? "" : "failed: ") + result.failure;
+  if (!result.missing.empty()) end = "not there: " + result.missing;
+  tell(progress_text(p) + ": " + end);
+}
+
 int benchmark(const BenchmarkArguments& arguments) {
   BenchmarkList list = load_benchmark(find_list(arguments.list));
   keep_only(list, arguments.only);
@@ -53,16 +80,16 @@ int benchmark(const BenchmarkArguments& arguments) {
   if (const char* data = std::getenv("RUBBLE_DATA")) options.folders.push_back(std::string(data) + "/logs");
   catch_interrupts();
   options.interrupted = interrupted;
-  if (isatty(STDERR_FILENO))
-    options.progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", one_line(what).c_str()); };
+  options.progress = isatty(STDERR_FILENO) ? show_progress : tell_finished;
   options.permit = [&](Scenario& scenario) {
     permit_command(arguments.mapper, with_mapper(arguments.mapper, {}), scenario, arguments.json ? stderr : stdout);
   };
   const Benchmark result = run_benchmark(list, options);
+  end_progress();
   if (!arguments.html.empty()) write_text_file(arguments.html, to_html(result));
   if (!arguments.markdown.empty()) write_text_file(arguments.markdown, to_markdown(result));
   std::fputs(printable(arguments.json ? to_json(result) : to_text(result)).c_str(), stdout);
-  if (interrupted()) return kInterrupted;
+  if (!result.gaps.empty()) return kInterrupted;
   bool any = false, failed = false;
   int gone = 0;
   for (const BenchmarkRow& row : result.rows) {

@@ -1,11 +1,13 @@
 #include "scenarios/benchmark/benchmark.h"
 
+#include <poll.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <ctime>
 #include <nlohmann/json.hpp>
@@ -128,12 +130,18 @@ void add_aligned(json& out, const slam::Mapper& mapper, const Trajectory& truth)
   out["loops_false"] = scoring::false_relations(claimed, truth);
 }
 
+/// Told how much of the log is done, 0..1.
+using ShareTeller = std::function<void(double)>;
+
 json run_log(const std::string& log, const std::string& relations, const Scenario& scenario,
-             const std::optional<int>& cpu_limit) {
+             const std::optional<int>& cpu_limit, const ShareTeller& tell_share) {
   robot::ReplayRobot robot(log);
   const auto mapper = slam::make_here(scenario.mapper, robot.model(), {scenario.seed, ""});
   TimedMapper timed(*mapper, !scenario.mapper.command().empty(), cpu_limit);
-  while (const auto inputs = robot.read()) timed.update(*inputs);
+  while (const auto inputs = robot.read()) {
+    timed.update(*inputs);
+    tell_share(robot.progress());
+  }
   timed.finish();
   json out = timed.figures();
   if (relations.empty()) {
@@ -177,9 +185,42 @@ json run_arena(const Scenario& scenario, const std::optional<int>& cpu_limit) {
 struct ChildAnswer {
   std::string text;
   double peak_mb = 0.0;
+  bool interrupted = false;  ///< before it had answered
 };
 
-ChildAnswer in_child(const std::function<json()>& work) {
+/// True: all of it.
+bool write_all(int pipe, const std::string& text) {
+  std::size_t sent = 0;
+  while (sent < text.size()) {
+    const ssize_t n = write(pipe, text.data() + sent, text.size() - sent);
+    if (n <= 0) return false;
+    sent += static_cast<std::size_t>(n);
+  }
+  return true;
+}
+
+/// A line for each per cent, ahead of the answer.
+ShareTeller through(int pipe) {
+  return [pipe, told = 0](double share) mutable {
+    const int percent = static_cast<int>(100.0 * share);
+    if (percent <= told) return;
+    told = percent;
+    write_all(pipe, std::to_string(percent) + "\n");
+  };
+}
+
+/// Takes the lines off the front of what has come so far; the last one counts.
+std::optional<double> take_share(std::string& text) {
+  const std::size_t end = text.rfind('\n');
+  if (end == std::string::npos) return std::nullopt;
+  const std::size_t before = text.rfind('\n', end - 1);
+  const double share = std::atof(text.c_str() + (before == std::string::npos ? 0 : before + 1)) / 100.0;
+  text.erase(0, end + 1);
+  return share;
+}
+
+ChildAnswer in_child(const std::function<json(const ShareTeller&)>& work, const ShareTeller& tell_share,
+                     const std::function<bool()>& interrupted) {
   int ends[2];
   if (pipe(ends) != 0) throw RunError("a pipe cannot be made; close other programs and try again");
   std::fflush(nullptr);
@@ -190,27 +231,31 @@ ChildAnswer in_child(const std::function<json()>& work) {
     dup2(STDERR_FILENO, STDOUT_FILENO);  // where libraries of mappers chatter: the parent's is a table, or JSON
     json answer;
     try {
-      answer = work();
+      answer = work(through(ends[1]));
     } catch (const TookTooLong& error) {
       answer = {{"failure", error.what()}, {"stopped", true}};
     } catch (const std::exception& error) {
       answer = {{"failure", error.what()}};
     }
-    const std::string text = answer.dump();
-    std::size_t sent = 0;
-    while (sent < text.size()) {
-      const ssize_t n = write(ends[1], text.data() + sent, text.size() - sent);
-      if (n <= 0) break;
-      sent += static_cast<std::size_t>(n);
-    }
+    write_all(ends[1], answer.dump());
     _exit(0);
   }
   close(ends[1]);
   ChildAnswer answer;
   char buffer[4096];
-  for (ssize_t n; (n = read(ends[0], buffer, sizeof buffer)) != 0;) {
+  pollfd end{ends[0], POLLIN, 0};
+  while (true) {
+    constexpr int kLook = 100;  // [ms]
+    if (interrupted && interrupted()) {
+      answer.interrupted = true;
+      kill(child, SIGKILL);  // its guardian ends a mapper that is a program
+      break;
+    }
+    if (poll(&end, 1, kLook) <= 0) continue;
+    const ssize_t n = read(ends[0], buffer, sizeof buffer);
     if (n > 0) answer.text.append(buffer, static_cast<std::size_t>(n));
-    if (n < 0 && errno != EINTR) break;
+    if (const auto share = take_share(answer.text)) tell_share(*share);
+    if (n == 0 || (n < 0 && errno != EINTR)) break;
   }
   close(ends[0]);
   rusage usage{};
@@ -251,7 +296,8 @@ void take(BenchmarkResult& result, const ChildAnswer& answer) {
   result.peak_mb = said.value("is_program", false) ? number("program_peak_mb") : answer.peak_mb;
 }
 
-/// What several runs gave: medians of errors, the largest of times. A run that failed is told, and spoils the rest.
+/// What several runs gave, one at least: medians of errors, the largest of times. A run that failed is told, and spoils
+/// the rest.
 BenchmarkResult summary(const std::vector<BenchmarkResult>& runs) {
   for (const BenchmarkResult& run : runs)
     if (!run.failure.empty()) return run;
@@ -351,8 +397,10 @@ Scenario scenario_of(const BenchmarkCase& what, const BenchmarkMapper& mapper, c
   return scenario;
 }
 
+/// runs 0, and nothing missing: it was interrupted before the first was done.
 BenchmarkResult run_one(const BenchmarkCase& what, const BenchmarkMapper& mapper, const std::optional<int>& cpu_limit,
-                        const std::vector<std::string>& folders, const BenchmarkOptions& options) {
+                        const std::vector<std::string>& folders, const BenchmarkOptions& options,
+                        BenchmarkProgress progress) {
   BenchmarkResult result;
   result.mapper = mapper.name;
   const CaseFiles files = files_of(what, folders);
@@ -361,18 +409,27 @@ BenchmarkResult run_one(const BenchmarkCase& what, const BenchmarkMapper& mapper
   Scenario scenario = scenario_of(what, mapper, files, options);
   std::vector<BenchmarkResult> runs;
   for (const std::uint64_t seed : what.seeds) {
-    if (!runs.empty() && options.interrupted && options.interrupted()) break;
+    if (options.interrupted && options.interrupted()) break;
     scenario.seed = seed;
     BenchmarkResult run;
-    const auto work = [&] {
+    const auto work = [&](const ShareTeller& tell_share) {
       return files.log.empty() ? run_arena(scenario, cpu_limit)
-                               : run_log(files.log, files.relations, scenario, cpu_limit);
+                               : run_log(files.log, files.relations, scenario, cpu_limit, tell_share);
     };
-    take(run, in_child(work));
+    progress.seed = runs.size() + 1;
+    const auto tell = [&](const std::optional<double>& share) {
+      progress.share = share;
+      if (options.progress) options.progress(progress);
+    };
+    tell(std::nullopt);
+    const ChildAnswer answer = in_child(work, tell, options.interrupted);
+    if (answer.interrupted) break;
+    take(run, answer);
     if (run.failure.empty() && what.goal && !run.error_m) run.failure = "its trajectory cannot be judged";
     if (!run.failure.empty() && what.seeds.size() > 1) run.failure += " (seed " + std::to_string(seed) + ")";
     runs.push_back(std::move(run));
   }
+  if (runs.empty()) return result;
   result = summary(runs);
   result.mapper = mapper.name;
   if (result.failure.empty() && result.runs == what.seeds.size()) judge(what, result);
@@ -384,19 +441,26 @@ BenchmarkResult run_one(const BenchmarkCase& what, const BenchmarkMapper& mapper
 Benchmark run_benchmark(const BenchmarkList& list, const BenchmarkOptions& options) {
   std::vector<std::string> folders{list.folder};
   folders.insert(folders.end(), options.folders.begin(), options.folders.end());
-  Benchmark benchmark{list.name, list.about, {}};
+  Benchmark benchmark{list.name, list.about, {}, {}};
   // A key that a mapper does not have shall cost no run.
   for (const BenchmarkCase& what : list.cases) {
     const CaseFiles files = files_of(what, folders);
     for (const BenchmarkMapper& mapper : list.mappers)
       if (files.missing.empty()) scenario_of(what, mapper, files, options);
   }
+  std::size_t number = 0;
   for (const BenchmarkCase& what : list.cases) {
+    ++number;
     BenchmarkRow row{what, {}};
     for (const BenchmarkMapper& mapper : list.mappers) {
-      if (options.interrupted && options.interrupted()) break;
-      if (options.progress) options.progress(what.name + ", " + mapper.name);
-      row.results.push_back(run_one(what, mapper, list.cpu_limit, folders, options));
+      BenchmarkProgress progress{number, list.cases.size(), what.name, mapper.name, 0, what.seeds.size(), {}, nullptr};
+      BenchmarkResult result = run_one(what, mapper, list.cpu_limit, folders, options, progress);
+      const bool failed = !result.missing.empty() || !result.failure.empty();
+      const bool whole = failed || result.runs == what.seeds.size();
+      if (!whole) benchmark.gaps.push_back({what.name, mapper.name, result.runs, what.seeds.size()});
+      progress.finished = &result;
+      if (whole && options.progress) options.progress(progress);
+      if (failed || result.runs > 0) row.results.push_back(std::move(result));
     }
     if (!row.results.empty()) benchmark.rows.push_back(std::move(row));
   }

@@ -43,16 +43,37 @@ struct BenchmarkRow {
   std::vector<BenchmarkResult> results;  ///< in the order of the list's mappers
 };
 
+/// What an interruption has kept from being run.
+struct BenchmarkGap {
+  std::string name;  ///< of the case
+  std::string mapper;
+  std::size_t runs = 0;   ///< seeds that were done before it; their figures stand in the case's row
+  std::size_t seeds = 1;  ///< that were asked for
+};
+
 struct Benchmark {
   std::string name;
   std::string about;
-  std::vector<BenchmarkRow> rows;
+  std::vector<BenchmarkRow> rows;  ///< only those with a result
+  std::vector<BenchmarkGap> gaps;  ///< empty: it was not interrupted
+};
+
+/// How far a benchmark is.
+struct BenchmarkProgress {
+  std::size_t number = 0;  ///< of the case, from 1
+  std::size_t cases = 0;
+  std::string name;  ///< of the case
+  std::string mapper;
+  std::size_t seed = 0;  ///< the how manieth of them, from 1
+  std::size_t seeds = 1;
+  std::optional<double> share;                ///< of a log, 0..1
+  const BenchmarkResult* finished = nullptr;  ///< the mapper is through with the case
 };
 
 struct BenchmarkOptions {
-  std::vector<std::string> folders;                  ///< where logs are looked for, beside the list's own
-  std::function<void(const std::string&)> progress;  ///< told what is run next
-  std::function<bool()> interrupted;
+  std::vector<std::string> folders;  ///< where logs are looked for, beside the list's own
+  std::function<void(const BenchmarkProgress&)> progress;
+  std::function<bool()> interrupted;      ///< true: what runs is ended, and no more is run
   std::function<void(Scenario&)> permit;  ///< asked before a mapper that is a program of the user's
 };
 

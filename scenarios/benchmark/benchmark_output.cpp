@@ -170,12 +170,27 @@ constexpr const char* kNote =
     "reference has the robot. Times are CPU time of the mapper alone, of this machine; the most work of a scan is in "
     "millions of units that the mapper counts, the same on every machine.";
 
+/// What was not run, case by case; empty: it was not interrupted.
+std::string interruption(const Benchmark& benchmark) {
+  if (benchmark.gaps.empty()) return "";
+  std::string text = "Interrupted, so these are not run to their end: ", last;
+  for (const BenchmarkGap& gap : benchmark.gaps) {
+    if (!last.empty()) text += gap.name == last ? ", " : "), ";
+    if (gap.name != last) text += gap.name + " (";
+    text += gap.mapper;
+    if (gap.runs > 0) text += " after " + std::to_string(gap.runs) + " of " + std::to_string(gap.seeds) + " seeds";
+    last = gap.name;
+  }
+  return text + ").";
+}
+
 }  // namespace
 
 std::string to_text(const Benchmark& benchmark) {
   std::string text = as_text(results_table(benchmark));
   const Table published = published_table(benchmark);
   if (!published.rows.empty()) text += "\npublished\n" + as_text(published);
+  if (!benchmark.gaps.empty()) text += "\n" + interruption(benchmark) + "\n";
   return text;
 }
 
@@ -225,8 +240,15 @@ std::string to_json(const Benchmark& benchmark) {
       c["published"].push_back({{"by", p.by}, {"source", p.source}, {"error_m", p.value}});
     cases.push_back(c);
   }
-  return ordered_json{
-             {"name", benchmark.name}, {"about", benchmark.about}, {"commit", versions().commit}, {"cases", cases}}
+  ordered_json gaps = ordered_json::array();
+  for (const BenchmarkGap& gap : benchmark.gaps)
+    gaps.push_back({{"case", gap.name}, {"mapper", gap.mapper}, {"runs", gap.runs}, {"seeds", gap.seeds}});
+  return ordered_json{{"name", benchmark.name},
+                      {"about", benchmark.about},
+                      {"commit", versions().commit},
+                      {"interrupted", !benchmark.gaps.empty()},
+                      {"not_run", gaps},
+                      {"cases", cases}}
              .dump(2, ' ', true, ordered_json::error_handler_t::replace) +
          "\n";
 }
@@ -240,6 +262,7 @@ std::string to_html(const Benchmark& benchmark) {
       "#ccc;text-align:left}.met{color:#06662f;font-weight:"
       "bold}.missed{color:#a11212;font-weight:bold}</style></head><body>\n<h1>" +
       escape_html(benchmark.name) + "</h1>\n<p>" + escape_html(benchmark.about) + "</p>\n<p>" + kNote + "</p>\n";
+  if (!benchmark.gaps.empty()) text += "<p class=\"missed\">" + escape_html(interruption(benchmark)) + "</p>\n";
   text += as_html(results_table(benchmark));
   const Table published = published_table(benchmark);
   if (!published.rows.empty()) text += "<h2>Published</h2>\n" + as_html(published);
@@ -249,6 +272,7 @@ std::string to_html(const Benchmark& benchmark) {
 std::string to_markdown(const Benchmark& benchmark) {
   std::string text = "# Benchmark of the mappers: " + benchmark.name + "\n\n";
   if (!benchmark.about.empty()) text += benchmark.about + "\n\n";
+  if (!benchmark.gaps.empty()) text += "**" + in_cell(interruption(benchmark)) + "**\n\n";
   text += std::string(kNote) + " Made by `rubble benchmark --markdown` of commit " + versions().commit + ".\n\n" +
           as_markdown(results_table(benchmark));
   const Table published = published_table(benchmark);
