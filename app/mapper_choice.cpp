@@ -25,8 +25,8 @@ void permit_command(const MapperChoice& choice, const std::vector<scenarios::Ove
   const std::string command = scenario.mapper.command();
   if (command.empty()) return;
   std::string typed = choice.command;
-  for (const auto& [key, value] : overrides)
-    if (key == "mapper.command") typed = value;
+  for (const scenarios::Override& o : overrides)
+    if (o.key == "mapper.command") typed = o.value;
   if (choice.allow_commands || command == typed) scenario.mapper.permit_command();
   scenario.mapper.require_permission();
   tell_command(command, told_on);

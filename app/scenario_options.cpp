@@ -73,9 +73,9 @@ std::vector<scenarios::Override> parse_sets(const std::vector<std::string>& sets
 
 std::vector<scenarios::Override> parse_sweep_sets(const std::vector<std::string>& sets) {
   const std::vector<scenarios::Override> overrides = parse_sets(sets);
-  for (const auto& [key, value] : overrides)
-    if (key == "seed" || key == "name")
-      throw UsageError("--set " + key + "=" + value +
+  for (const scenarios::Override& o : overrides)
+    if (o.key == "seed" || o.key == "name")
+      throw UsageError("--set " + o.key + "=" + o.value +
                        ": cannot be the same in every run; seeds and names come from the sweep file");
   return overrides;
 }

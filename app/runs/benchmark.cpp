@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 
 #include "app/commands.h"
@@ -41,7 +42,11 @@ void keep_only(BenchmarkList& list, const std::vector<std::string>& names) {
       kept.push_back(mapper);
       known = true;
     }
-    if (!known) throw UsageError("--mapper " + name + ": " + list.path + " has no mapper of that name");
+    if (known) continue;
+    std::vector<std::string> names_there;
+    for (const BenchmarkMapper& mapper : list.mappers) names_there.push_back(mapper.name);
+    throw UsageError("--mapper " + name + ": " + list.path + " has no mapper of that name" +
+                     did_you_mean(name, names_there) + "; it has " + joined(names_there));
   }
   list.mappers = kept;
 }
@@ -76,6 +81,11 @@ int benchmark(const BenchmarkArguments& arguments) {
   keep_only(list, arguments.only);
   if (!arguments.mapper.command.empty()) list.mappers.push_back({"process", with_mapper(arguments.mapper, {})});
   BenchmarkOptions options;
+  for (const std::string& folder : arguments.data) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(folder, error))
+      throw InputError("--data " + folder + ": there is no such folder; name the one that the logs of the list lie in");
+  }
   options.folders = arguments.data;
   if (const char* data = std::getenv("RUBBLE_DATA")) options.folders.push_back(std::string(data) + "/logs");
   catch_interrupts();

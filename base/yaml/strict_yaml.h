@@ -64,8 +64,8 @@ class YamlMap {
 
   /// Sets `dotted.key` to a YAML scalar or flow value, creating maps on the way: what `--set key=value` does. A number
   /// in the key counts the items of a list from 0 (`robots.0.name`). Call before reading: maps handed out stay as is.
-  /// Errors about such a value then name "--set dotted.key" as the place.
-  void set(const std::string& dotted_key, const std::string& value);
+  /// Errors about such a value then name `place`, or "--set dotted.key" where that is empty.
+  void set(const std::string& dotted_key, const std::string& value, const std::string& place = "");
   /// The whole document as YAML text, overrides included.
   std::string dump() const;
   /// The tree behind this map (base/yaml_node.h), shared, for who puts documents together.

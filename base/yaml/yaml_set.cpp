@@ -45,8 +45,8 @@ NodePtr& slot(YamlNode& parent, const std::string& word, const std::string& pare
 
 }  // namespace
 
-void YamlMap::set(const std::string& dotted_key, const std::string& value) {
-  const std::string name = "--set " + one_line(dotted_key);
+void YamlMap::set(const std::string& dotted_key, const std::string& value, const std::string& place) {
+  const std::string name = place.empty() ? "--set " + one_line(dotted_key) : place;
   const YamlPlace option{make_yaml_source(value, name, true), 0, 0};
   const std::vector<std::string> words = split(dotted_key, option);
   NodePtr parsed = parse_yaml(value, name, true);

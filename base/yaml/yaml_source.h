@@ -9,7 +9,7 @@ namespace rubble {
 
 /// The text a YAML value came from: a file, or one `--set key=value` of the command line.
 struct YamlSource {
-  std::string name;                ///< path, or "--set dotted.key"
+  std::string name;                ///< path, "--set dotted.key", or where in another file the value stands
   bool is_option = false;          ///< places are the name alone
   std::vector<std::string> lines;  ///< at least one, without line ends
 };

@@ -78,7 +78,7 @@ SlurmScripts slurm_scripts(const SlurmPlan& plan) {
   if (plan.record) array += " --record";
   if (plan.retry) array += " --retry";
   if (plan.allow_commands) array += " --allow-commands";
-  for (const auto& [key, value] : plan.overrides) array += " --set " + shell_word(key + "=" + value);
+  for (const Override& o : plan.overrides) array += " --set " + shell_word(o.key + "=" + o.value);
   array += " --shard \"$SLURM_ARRAY_TASK_ID/" + std::to_string(plan.shards) + "\"\n";
 
   const std::string merge = "#!/bin/bash\n" + sbatch_line("--job-name=" + sbatch_word("rubble-merge-" + plan.name)) +

@@ -67,7 +67,7 @@ std::vector<Configuration> named_sets(const YamlMap& root) {
     for (const auto& key : set.keys()) {
       refuse_reserved(set, key);
       refuse_map(set, key);
-      configuration.overrides.emplace_back(key, set.text(key, std::nullopt));
+      configuration.overrides.emplace_back(key, set.text(key, std::nullopt), set.place(key));
     }
     configurations.push_back(configuration);
   }
@@ -83,7 +83,7 @@ std::string with(const std::string& name, const std::string& key, const std::str
 
 /// Each configuration once for each value of `key`.
 std::vector<Configuration> crossed(const std::vector<Configuration>& configurations, const std::string& key,
-                                   const std::vector<std::string>& values) {
+                                   const std::vector<std::string>& values, const std::string& place) {
   std::vector<Configuration> product;
   for (const auto& configuration : configurations)
     for (const auto& value : values) {
@@ -95,15 +95,15 @@ std::vector<Configuration> crossed(const std::vector<Configuration>& configurati
             with(first ? configuration.name : configuration.reference, key, first ? values.front() : value);
         next.name = with(configuration.name, key, value);
       }
-      next.overrides.emplace_back(key, value);
+      next.overrides.emplace_back(key, value, place);
       product.push_back(std::move(next));
     }
   return product;
 }
 
-/// What one more pair of key and value costs each configuration [bytes].
-std::size_t cost_of(const std::string& key, const std::string& value) {
-  return sizeof(Override) + 3 * (key.size() + value.size());  // the pair, and its words in the two names
+/// What one more override costs each configuration [bytes].
+std::size_t cost_of(const std::string& key, const std::string& value, const std::string& place) {
+  return sizeof(Override) + place.size() + 3 * (key.size() + value.size());  // its words stand in the two names too
 }
 
 std::vector<Configuration> read_configurations(const YamlMap& root) {
@@ -111,7 +111,7 @@ std::vector<Configuration> read_configurations(const YamlMap& root) {
   std::size_t bytes = 0;  // of the largest configuration
   for (const auto& configuration : configurations) {
     std::size_t own = 0;
-    for (const auto& [key, value] : configuration.overrides) own += cost_of(key, value);
+    for (const Override& o : configuration.overrides) own += cost_of(o.key, o.value, o.place);
     bytes = std::max(bytes, own);
   }
   const YamlMap grid = root.map("set");
@@ -123,11 +123,11 @@ std::vector<Configuration> read_configurations(const YamlMap& root) {
     if (values.size() > kMostRuns / configurations.size())
       root.fail("set", "is a grid of more than a million configurations; split the sweep");
     std::size_t longest = 0;
-    for (const auto& value : values) longest = std::max(longest, cost_of(key, value));
+    for (const auto& value : values) longest = std::max(longest, cost_of(key, value, grid.place(key)));
     bytes += longest;
     if (bytes > kMostBytes / (configurations.size() * values.size()))
       root.fail("set", "is a grid whose configurations take more than 1 GB; split the sweep, or shorten its values");
-    configurations = crossed(configurations, key, values);
+    configurations = crossed(configurations, key, values, grid.place(key));
   }
   std::set<std::string> names;
   for (auto& configuration : configurations) {
@@ -229,7 +229,10 @@ std::vector<Job> expand(const Sweep& sweep, const std::string& code, const std::
       try {
         scenario = load_scenario(path, all);
       } catch (const InputError& error) {
-        throw InputError(sweep.path + ": configuration '" + configuration.name + "': " + error.what());
+        const std::string text = error.what();
+        const bool tells_line = text.rfind(sweep.path + ":", 0) == 0;
+        throw InputError(tells_line ? text + " (configuration '" + configuration.name + "')"
+                                    : sweep.path + ": configuration '" + configuration.name + "': " + text);
       }
       name = scenario.name;
       const auto kind = std::make_shared<JobKind>(JobKind{configuration.name, scenario});

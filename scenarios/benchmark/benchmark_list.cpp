@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <set>
 
+#include "scenarios/config/needed_key.h"
 #include "scenarios/config/seeds.h"
 
 namespace rubble::scenarios {
@@ -18,16 +19,19 @@ constexpr int kLongestRun = 1000000;    // [s]
 
 BenchmarkMapper read_mapper(const YamlMap& map) {
   BenchmarkMapper mapper;
+  refuse_misspelt(map, "kind");
   const std::string kind = map.text("kind", std::nullopt);
   mapper.name = map.text("name", kind);
-  mapper.overrides.emplace_back("mapper.kind", kind);
+  mapper.overrides.emplace_back("mapper.kind", kind, map.place("kind"));
   const YamlMap set = map.map("set");
-  for (const std::string& key : set.keys()) mapper.overrides.emplace_back("mapper." + key, set.text(key, std::nullopt));
+  for (const std::string& key : set.keys())
+    mapper.overrides.emplace_back("mapper." + key, set.text(key, std::nullopt), set.place(key));
   return mapper;
 }
 
 BenchmarkCase read_case(const YamlMap& map) {
   BenchmarkCase c;
+  refuse_misspelt(map, "name");
   c.name = map.text("name", std::nullopt);
   c.about = map.text("about", "");
   c.log = map.text("log", "");
@@ -41,8 +45,10 @@ BenchmarkCase read_case(const YamlMap& map) {
   const YamlMap set = map.map("set");
   for (const std::string& key : set.keys()) {
     if (key == "seed") set.fail(key, "stands beside the case's name");
-    c.overrides.emplace_back(key, set.text(key, std::nullopt));
+    c.overrides.emplace_back(key, set.text(key, std::nullopt), set.place(key));
   }
+  if (c.log.empty() && c.scenario.empty())
+    for (const char* key : {"log", "scenario"}) refuse_misspelt(map, key);
   if (c.log.empty() == c.scenario.empty()) map.fail("name", "a case needs either 'log' or 'scenario'");
   if (!c.relations.empty() && c.log.empty()) map.fail("relations", "belong to a log; give 'log' beside them");
   c.measure = c.relations.empty() ? BenchmarkMeasure::Aligned : BenchmarkMeasure::Relations;
@@ -87,6 +93,7 @@ BenchmarkList load_benchmark(const std::string& path) {
     if (!names.insert(list.cases.back().name).second)
       row.fail("name", "case '" + list.cases.back().name + "' is there twice");
   }
+  for (const char* key : {"mappers", "cases"}) refuse_misspelt(root, key);
   if (list.mappers.empty()) root.fail("mappers", "a benchmark needs one mapper at least: mappers: [{kind: robust}]");
   if (list.cases.empty())
     root.fail("cases", "a benchmark needs one case at least: cases: [{name: lab, log: lab.rawlog}]");

@@ -258,7 +258,7 @@ namespace {
 
 Scenario load(const std::string& path, const std::vector<Override>& overrides, bool recorded) {
   YamlMap root = YamlMap::load(path);
-  for (const auto& [key, value] : overrides) root.set(key, value);
+  for (const Override& o : overrides) root.set(o.key, o.value, o.place);
   Scenario s;
   s.name = root.text("name", as_file_name(std::filesystem::path(path).stem().string()));
   if (const auto trouble = file_name_trouble(s.name)) root.fail("name", *trouble);
@@ -284,7 +284,7 @@ Scenario load_recorded(const std::string& path, const std::vector<Override>& ove
 
 Scenario default_scenario(const std::vector<Override>& overrides) {
   YamlMap root = YamlMap::parse("{}", "defaults");
-  for (const auto& [key, value] : overrides) root.set(key, value);
+  for (const Override& o : overrides) root.set(o.key, o.value, o.place);
   Scenario s;
   s.has_arena = false;
   s.name = root.text("name", std::string("map"));

@@ -50,8 +50,15 @@ struct Scenario {
   std::uint64_t arena_seed() const { return generate_seed_given ? generate.seed : seed; }
 };
 
-/// `--set dotted.key=value`.
-using Override = std::pair<std::string, std::string>;
+/// `--set dotted.key=value`, or the same of a list or a sweep.
+struct Override {
+  Override(std::string its_key, std::string its_value, std::string its_place = "")
+      : key(std::move(its_key)), value(std::move(its_value)), place(std::move(its_place)) {}
+
+  std::string key;
+  std::string value;
+  std::string place;  ///< `file:line:column` where it stands; empty: typed
+};
 
 /// What `arena.generate.kind` takes.
 const std::vector<std::string>& generated_kinds();

@@ -156,7 +156,7 @@ void as_mounted(const LidarSettings& lidar, robot::LaserScan& scan) {
 
 RobotFile load_robot_file(const std::string& path, const std::vector<Override>& overrides) {
   YamlMap root = YamlMap::load(path);
-  for (const auto& [key, value] : overrides) root.set(key, as_text(key, value));
+  for (const Override& o : overrides) root.set(o.key, as_text(o.key, o.value), o.place);
   RobotFile file;
   file.lidar.port = "/dev/ttyACM0";
   file.robot.base_port = "/dev/ttyUSB0";

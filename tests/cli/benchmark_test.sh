@@ -244,6 +244,35 @@ json_holds b.json "not j['interrupted'] and j['not_run'] == []"
 printf 'cpu_limit_s: 0\nmappers: [{kind: robust}]\ncases: [{name: a, log: x}]\n' >limit.yaml
 expect_exit 3 'limit.yaml:1' "$rubble" benchmark limit.yaml
 
+expect_exit 2 "--mapper robst: list.yaml has no mapper of that name, did you mean 'robust'?; it has paper, robust, open" \
+  "$rubble" benchmark list.yaml --mapper robst
+expect_exit 3 '--data /nowhere: there is no such folder' "$rubble" benchmark list.yaml --data . --data /nowhere
+expect_exit 3 '--data s.yaml: there is no such folder' "$rubble" benchmark list.yaml --data s.yaml
+# Slips in a list are told where they stand in it.
+slip() {
+  printf '%s\n' "$1" >slip.yaml
+  expect_exit 3 "$2" "$rubble" benchmark slip.yaml
+}
+slip 'mapers: [{kind: robust}]
+cases: [{name: a, scenario: s.yaml}]' "slip.yaml:1:1: unknown key 'mapers', did you mean 'mappers'?"
+slip 'mappers: [{kind: robust}]
+case: [{name: a, scenario: s.yaml}]' "slip.yaml:2:1: unknown key 'case', did you mean 'cases'?"
+slip 'mappers: [{knid: robust}]
+cases: [{name: a, scenario: s.yaml}]' "slip.yaml:1:12: unknown key 'knid', did you mean 'kind'?"
+slip 'mappers: [{kind: robust}]
+cases: [{name: a, scenaro: s.yaml}]' "slip.yaml:2:19: unknown key 'scenaro', did you mean 'scenario'?"
+slip 'mappers: [{kind: robst}]
+cases: [{name: a, scenario: s.yaml}]' "slip.yaml:1:12: 'kind' is 'robst'; give one of"
+slip 'mappers:
+  - {kind: robust, set: {resolution: 0.1}}
+cases: [{name: a, scenario: s.yaml}]' "slip.yaml:2:26: unknown key 'resolution', did you mean 'resolution_m'?"
+slip 'mappers:
+  - {kind: process, set: {command: touch ran}}
+cases: [{name: a, scenario: s.yaml}]' "slip.yaml:2:27: mapper.command: 'touch ran' stands in a file, and a command of a file runs only with --allow-commands"
+slip 'mappers: [{kind: robust}]
+cases:
+  - {name: a, scenario: s.yaml, set: {time_limit: 3}}' "slip.yaml:3:39: unknown key 'time_limit', did you mean 'time_limit_s'?"
+[[ -e ran ]] && fail "a command of a list ran unasked"
 expect_exit 2 '--mapper nobody' "$rubble" benchmark list.yaml --mapper nobody
 expect_exit 3 'nowhere.yaml' "$rubble" benchmark nowhere.yaml
 printf 'mappers: [{kind: robust}]\n' >none.yaml

@@ -185,6 +185,10 @@ TEST_F(SweepFile, FaultsAreNamedWithPlaceAndRemedy) {
   EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: 1\nset: {mapper.particles: [5, 5]}\n"), HasSubstr("twice"));
   EXPECT_THAT(error_of("scenarios: [small.yaml, small.yaml]\nseeds: 1\n"),
               HasSubstr("two scenarios are named 'small'"));
+  EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: 1\nconfigs: {bad: {mapper.icpp: 1}}\n"),
+              HasSubstr("sweep.yaml:3:17: unknown key 'icpp'"));
+  EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: 1\nset: {mapper.kind: [paper, papr]}\n"),
+              HasSubstr("sweep.yaml:3:7: 'kind' is 'papr'"));
   EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: 1\nconfigs: {bad: {mapper.icpp: 1}}\n"), HasSubstr("'bad'"));
   EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: 1\nconfigs: {bad: {mapper.icpp: 1}}\n"), HasSubstr("icp"));
   EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: 0-99999999\n"), HasSubstr("million"));
