@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <stdexcept>
@@ -18,9 +19,11 @@
 #include "base/angle.h"
 #include "base/error.h"
 #include "base/text/input_file.h"
+#include "base/trajectory.h"
 #include "robot/logs/log.h"
 #include "scenarios/benchmark/program_meter.h"
 #include "scenarios/run/core.h"
+#include "scenarios/run/recorded_log.h"
 #include "scenarios/run/run.h"
 #include "scoring/trajectory/relative_error.h"
 #include "scoring/trajectory/trajectory_error.h"
@@ -29,6 +32,7 @@
 namespace rubble::scenarios {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// CPU time of this process with all its threads: a mapper may have some [s].
@@ -117,25 +121,38 @@ class TimedMapper {
   double finish_ = 0.0;
 };
 
-void add_aligned(json& out, const slam::Mapper& mapper, const Trajectory& truth) {
-  const scoring::TrajectoryError error = scoring::trajectory_error(mapper.trajectory(), truth);
-  const scoring::TrajectoryError live = scoring::trajectory_error(mapper.live_trajectory(), truth);
-  if (error.matched < 2) return;
+/// Where the files of a case lie.
+struct CaseFiles {
+  std::string log, reference, relations, scenario;
+  bool reference_named = false;  ///< by the list: else it was found beside the log, and counts where the log has none
+  std::string missing;           ///< the first that is not there
+};
+
+/// log: whose own stamps the truth has; null: it has those that the log is delivered with. False: they have no moments
+/// in common.
+bool add_aligned(json& out, const slam::Mapper& mapper, const Trajectory& truth,
+                 const robot::ReplayRobot* log = nullptr) {
+  const auto stamped = [&](const Trajectory& poses) { return log != nullptr ? log->in_own_stamps(poses) : poses; };
+  const scoring::TrajectoryError error = scoring::trajectory_error(stamped(mapper.trajectory()), truth);
+  const scoring::TrajectoryError live = scoring::trajectory_error(stamped(mapper.live_trajectory()), truth);
+  if (error.matched < 2) return false;
   out["error_m"] = error.ate_aligned_m;
   out["live_error_m"] = live.ate_aligned_m;
-  if (!out.contains(slam::MapperFigure::kLoopsClosed)) return;
+  if (!out.contains(slam::MapperFigure::kLoopsClosed)) return true;
+  const auto name = [&](Stamp stamp) { return log != nullptr ? log->own_stamp(stamp) : stamp; };
   std::vector<scoring::Relation> claimed;
   for (const slam::FoundLoop& loop : mapper.found_loops())
-    if (loop.closed()) claimed.push_back({loop.from, loop.to, loop.T_from_to});
+    if (loop.closed()) claimed.push_back({name(loop.from), name(loop.to), loop.T_from_to});
   out["loops_false"] = scoring::false_relations(claimed, truth);
+  return true;
 }
 
 /// Told how much of the log is done, 0..1.
 using ShareTeller = std::function<void(double)>;
 
-json run_log(const std::string& log, const std::string& relations, const Scenario& scenario,
-             const std::optional<int>& cpu_limit, const ShareTeller& tell_share) {
-  robot::ReplayRobot robot(log);
+json run_log(const CaseFiles& files, const Scenario& scenario, const std::optional<int>& cpu_limit,
+             const ShareTeller& tell_share) {
+  robot::ReplayRobot robot(files.log);
   const auto mapper = slam::make_here(scenario.mapper, robot.model(), {scenario.seed, ""});
   TimedMapper timed(*mapper, !scenario.mapper.command().empty(), cpu_limit);
   while (const auto inputs = robot.read()) {
@@ -144,15 +161,22 @@ json run_log(const std::string& log, const std::string& relations, const Scenari
   }
   timed.finish();
   json out = timed.figures();
-  if (relations.empty()) {
-    if (!robot.reference().empty()) add_aligned(out, *mapper, robot.reference());
+  if (files.relations.empty()) {
+    // Other programs know the scans by the log's own stamps.
+    const bool is_other = !files.reference.empty() && (files.reference_named || robot.reference().empty());
+    const Trajectory other = is_other ? read_tum(files.reference) : Trajectory();
+    if (is_other && !add_aligned(out, *mapper, other, &robot))
+      throw InputError(files.reference + ": none of its moments lies in " + files.log +
+                       "; are both of the same drive?");
+    if (!is_other && robot.reference().empty()) out["no_reference"] = true;
+    if (!is_other && !robot.reference().empty()) add_aligned(out, *mapper, robot.reference());
     return out;
   }
-  const auto known = scoring::read_relations(relations);
+  const auto known = scoring::read_relations(files.relations);
   const auto error = scoring::relation_error(robot.in_own_stamps(mapper->trajectory()), known);
   const auto live = scoring::relation_error(robot.in_own_stamps(mapper->live_trajectory()), known);
   if (error.relations == 0)
-    throw InputError(relations + ": none of its moments lies in " + log + "; are both of the same drive?");
+    throw InputError(files.relations + ": none of its moments lies in " + files.log + "; are both of the same drive?");
   out["error_m"] = error.mean_m;
   out["error_deg"] = rad_to_deg(error.mean_rad);
   out["live_error_m"] = live.mean_m;
@@ -279,6 +303,7 @@ void take(BenchmarkResult& result, const ChildAnswer& answer) {
   const auto number = [&](const char* key) {
     return said.contains(key) ? std::optional<double>(said[key].get<double>()) : std::nullopt;
   };
+  if (said.value("no_reference", false)) result.not_judged = "no reference";
   result.error_m = number("error_m");
   result.live_error_m = number("live_error_m");
   result.error_deg = number("error_deg");
@@ -344,6 +369,7 @@ BenchmarkResult summary(const std::vector<BenchmarkResult>& runs) {
 }
 
 void judge(const BenchmarkCase& what, BenchmarkResult& result) {
+  if (!what.goal && !what.live_goal && !what.false_loops_goal) result.not_judged.clear();
   const auto ask = [&](const std::optional<double>& goal, const std::optional<double>& value, const char* column) {
     if (!goal || !value) return;
     const bool met = *value <= *goal;
@@ -360,13 +386,19 @@ void judge(const BenchmarkCase& what, BenchmarkResult& result) {
   if (what.speed_goal && result.scans_per_second) ask(-*what.speed_goal, -*result.scans_per_second, "scans/s");
   ask(what.slow_goal, result.slow_ms, "99 % ms");
   ask(what.worst_time_goal, result.worst_ms, "worst ms");
+  if (!result.not_judged.empty() && result.goal_met == true) result.goal_met.reset();  // not all of them
 }
 
-/// Where the files of a case lie.
-struct CaseFiles {
-  std::string log, relations, scenario;
-  std::string missing;  ///< the first that is not there
-};
+/// A trajectory beside a log: truth.tum of a run folder, lab.tum of lab.rlog or lab.clf.bz2. Empty: none.
+std::string reference_beside(const std::string& log) {
+  const fs::path folder = fs::path(log).parent_path();
+  fs::path stem = fs::path(log).filename();
+  if (stem.extension() == ".gz" || stem.extension() == ".bz2") stem = stem.stem();
+  const bool is_of_run = stem == "log.rlog";
+  const fs::path beside = folder / (is_of_run ? fs::path("truth.tum") : stem.replace_extension(".tum"));
+  std::error_code error;
+  return fs::is_regular_file(beside, error) && !read_tum(beside.string()).empty() ? beside.string() : "";
+}
 
 CaseFiles files_of(const BenchmarkCase& what, const std::vector<std::string>& folders) {
   CaseFiles files;
@@ -374,7 +406,7 @@ CaseFiles files_of(const BenchmarkCase& what, const std::vector<std::string>& fo
     if (wanted.empty()) return;
     found = find_in(folders, wanted);
     if (found.empty() && files.missing.empty()) files.missing = wanted;
-    if (found.empty() || std::filesystem::is_directory(found)) return;
+    if (found.empty() || fs::is_directory(found)) return;
     // A log on the command line may come through a pipe; what a list names would be waited for unasked.
     InputRules rules;
     rules.most = std::size_t{1} << 31;  // the readers have smaller ones of their own
@@ -382,6 +414,13 @@ CaseFiles files_of(const BenchmarkCase& what, const std::vector<std::string>& fo
     require_input(found, rules);
   };
   find(what.log, files.log);
+  if (!files.log.empty() && fs::is_directory(files.log)) files.log = log_in(files.log);
+  find(what.reference, files.reference);
+  if (!files.reference.empty() && read_tum(files.reference).empty())
+    throw InputError(files.reference + ": holds no poses; give lines of TUM text, 'time x y z qx qy qz qw'");
+  files.reference_named = !what.reference.empty();
+  if (!files.log.empty() && !files.reference_named && what.relations.empty())
+    files.reference = reference_beside(files.log);
   find(what.relations, files.relations);
   find(what.scenario, files.scenario);
   return files;
@@ -413,8 +452,7 @@ BenchmarkResult run_one(const BenchmarkCase& what, const BenchmarkMapper& mapper
     scenario.seed = seed;
     BenchmarkResult run;
     const auto work = [&](const ShareTeller& tell_share) {
-      return files.log.empty() ? run_arena(scenario, cpu_limit)
-                               : run_log(files.log, files.relations, scenario, cpu_limit, tell_share);
+      return files.log.empty() ? run_arena(scenario, cpu_limit) : run_log(files, scenario, cpu_limit, tell_share);
     };
     progress.seed = runs.size() + 1;
     const auto tell = [&](const std::optional<double>& share) {
@@ -425,7 +463,8 @@ BenchmarkResult run_one(const BenchmarkCase& what, const BenchmarkMapper& mapper
     const ChildAnswer answer = in_child(work, tell, options.interrupted);
     if (answer.interrupted) break;
     take(run, answer);
-    if (run.failure.empty() && what.goal && !run.error_m) run.failure = "its trajectory cannot be judged";
+    if (run.failure.empty() && what.goal && !run.error_m && run.not_judged.empty())
+      run.failure = "its trajectory cannot be judged";
     if (!run.failure.empty() && what.seeds.size() > 1) run.failure += " (seed " + std::to_string(seed) + ")";
     runs.push_back(std::move(run));
   }

@@ -35,6 +35,7 @@ BenchmarkCase read_case(const YamlMap& map) {
   c.name = map.text("name", std::nullopt);
   c.about = map.text("about", "");
   c.log = map.text("log", "");
+  c.reference = map.text("reference", "");
   c.relations = map.text("relations", "");
   c.scenario = map.text("scenario", "");
   if (map.has("seeds"))
@@ -51,6 +52,8 @@ BenchmarkCase read_case(const YamlMap& map) {
     for (const char* key : {"log", "scenario"}) refuse_misspelt(map, key);
   if (c.log.empty() == c.scenario.empty()) map.fail("name", "a case needs either 'log' or 'scenario'");
   if (!c.relations.empty() && c.log.empty()) map.fail("relations", "belong to a log; give 'log' beside them");
+  if (!c.reference.empty() && c.log.empty()) map.fail("reference", "belongs to a log; give 'log' beside it");
+  if (!c.reference.empty() && !c.relations.empty()) map.fail("reference", "beside 'relations'; keep one of them");
   c.measure = c.relations.empty() ? BenchmarkMeasure::Aligned : BenchmarkMeasure::Relations;
   const auto goal = [&](const char* key, double most = kLargestError) {
     return map.has(key) ? std::optional<double>(map.number(key, std::nullopt, 0.0, most)) : std::nullopt;

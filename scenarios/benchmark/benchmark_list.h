@@ -32,7 +32,8 @@ enum class BenchmarkMeasure {
 struct BenchmarkCase {
   std::string name;
   std::string about;
-  std::string log;                      ///< path as written in the list; empty: an arena
+  std::string log;                      ///< path as written in the list, also of a run folder; empty: an arena
+  std::string reference;                ///< path as written, TUM text; empty: what is found beside the log, or in it
   std::string relations;                ///< path as written; empty: none
   std::string scenario;                 ///< path as written; empty: a log
   std::vector<std::uint64_t> seeds{1};  ///< of the arena and the run; a log has one

@@ -56,11 +56,12 @@ std::string goals_of(const BenchmarkCase& what) {
 
 /// "no" says which.
 std::string goal_met(const BenchmarkResult& result) {
-  if (!result.goal_met) return "";
+  const std::string not_judged = result.not_judged.empty() ? "" : "not judged: " + result.not_judged;
+  if (!result.goal_met) return not_judged;
   if (*result.goal_met) return "yes";
   std::string text = "no";
   for (const std::string& column : result.goals_missed) text += (text == "no" ? ": " : ", ") + column;
-  return text;
+  return text + (not_judged.empty() ? "" : "; " + not_judged);
 }
 
 Table results_table(const Benchmark& benchmark) {
@@ -221,6 +222,7 @@ std::string to_json(const Benchmark& benchmark) {
       set(j, "error_deg", r.error_deg);
       j["goal_met"] = r.goal_met ? ordered_json(*r.goal_met) : ordered_json();
       j["goals_missed"] = r.goals_missed;
+      if (!r.not_judged.empty()) j["not_judged"] = r.not_judged;
       j["scans"] = r.scans;
       set(j, "scans_per_second", r.scans_per_second);
       set(j, "usual_ms", r.usual_ms);

@@ -203,6 +203,33 @@ printf 'mappers: [{kind: robust}]\ncases: [{name: a, scenario: s.yaml, seed: 3, 
 [[ $? == 4 ]] || fail "a run that cannot be judged must end with 4: $(cat err.txt)"
 json_holds unjudged.json "(lambda r: 'cannot be judged' in r['failure'] and r['goal_met'] is None)(j['cases'][0]['results'][0])"
 
+# A log is judged by the trajectory that the list names, or that lies beside it; a run folder by its truth.
+cp run/log.rlog named.rlog && cp run/log.rlog beside.rlog && cp run/log.rlog alone.rlog && cp run/truth.tum beside.tum
+awk '{print $1, -$3 + 7, $2, $4, $5, $6, $7, $8}' run/truth.tum >turned.tum
+cat >references.yaml <<'YAML'
+mappers: [{kind: robust}]
+cases:
+  - {name: folder, log: run, goal_m: 0.2}
+  - {name: file, log: run/log.rlog, goal_m: 0.2}
+  - {name: beside, log: beside.rlog, goal_m: 0.2}
+  - {name: named, log: named.rlog, reference: turned.tum, goal_m: 0.2}
+  - {name: alone, log: alone.rlog, goal_m: 0.2, ms_99_goal: 1e5}
+  - {name: slow, log: alone.rlog, goal_m: 0.2, ms_99_goal: 0}
+  - {name: without a goal, log: alone.rlog}
+YAML
+"$rubble" benchmark references.yaml --json --markdown references.md >references.json 2>err.txt || fail "benchmark by references ended with $?: $(cat err.txt)"
+json_holds references.json "(lambda e: 0 < e[0] < 0.2 and all(abs(x - e[0]) < 1e-6 for x in e))([c['results'][0]['error_m'] for c in j['cases'][:4]])"
+json_holds references.json "[c['results'][0]['goal_met'] for c in j['cases']] == [True] * 4 + [None, False, None]"
+json_holds references.json "[c['results'][0].get('not_judged') for c in j['cases']] == [None] * 4 + ['no reference'] * 2 + [None]"
+json_holds references.json "all(c['results'][0]['scans_per_second'] > 0 and c['results'][0]['error_m'] is None and c['results'][0]['loops_closed'] is not None for c in j['cases'][4:])"
+grep -qF '| not judged: no reference |' references.md || fail "that a goal is not judged is not told: $(cat references.md)"
+grep -qF '| no: 99 % ms; not judged: no reference |' references.md || fail "a goal that is missed beside one that is not judged is not told"
+tail -n 1 err.txt | grep -qF "no reference to judge by: alone, slow; give the case a trajectory, 'reference: FILE.tum'" || fail "it is not told which logs have no reference: $(cat err.txt)"
+printf 'mappers: [{kind: robust}]\ncases: [{name: a, log: alone.rlog, reference: true.relations}]\n' >reference.yaml
+expect_exit 3 'true.relations:1' "$rubble" benchmark reference.yaml
+printf 'mappers: [{kind: robust}]\ncases: [{name: a, log: alone.rlog, reference: beside.tum, relations: true.relations}]\n' >reference.yaml
+expect_exit 3 "beside 'relations'; keep one of them" "$rubble" benchmark reference.yaml
+
 # A mapper that takes too long is stopped, the others are not.
 cat >slow.yaml <<YAML
 cpu_limit_s: 1
