@@ -56,6 +56,8 @@ int merge(const MergeArguments& arguments) {
     tell(arguments.second + ": is the same map as " + arguments.first + ", so nothing is added; were two runs meant?");
   print_row("start of the second in the first", start_text(report.T_first_start));
   print_row("way in common", common_text(report));
+  print_row("stays with the runs", std::string("victims, logs and scores") +
+                                       (report.has_way ? "" : ", and trajectories: both drives cover the same time"));
   print_row("folder", arguments.out);
   return kOk;
 }

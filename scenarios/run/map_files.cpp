@@ -13,6 +13,7 @@
 #include "base/text/text_file.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
 #include "scenarios/run/loop_picture.h"
+#include "scenarios/run/run.h"
 #include "scenarios/run/scan_picture.h"
 #include "slam/map_exports.h"
 
@@ -87,7 +88,38 @@ MergeReport report_of(const std::vector<slam::MapScan>& both, std::size_t of_fir
   return report;
 }
 
+/// Of several scans that hang on one key frame the first; nothing where they are not in the order of their time.
+std::optional<Trajectory> way_of(std::vector<slam::MapScan>::const_iterator scan,
+                                 std::vector<slam::MapScan>::const_iterator end) {
+  Trajectory way;
+  for (; scan != end; ++scan) {
+    if (!way.empty() && scan->scan.stamp == way.back().stamp) continue;
+    if (!way.empty() && scan->scan.stamp < way.back().stamp) return std::nullopt;
+    way.push_back({scan->scan.stamp, scan->T_map_base});
+  }
+  return way;
+}
+
+/// Text of estimate.tum.
+std::string way_text(const std::optional<Trajectory>& way) {
+  if (!way) return "# no way: the two drives cover the same time\n";
+  std::string text = "# key frames of both drives\n";
+  for (const StampedPose& stamped : *way) text += tum_line(stamped) + '\n';
+  return text;
+}
+
 }  // namespace
+
+std::optional<Trajectory> merged_way(const std::vector<slam::MapScan>& both, std::size_t of_first) {
+  const auto cut = both.begin() + static_cast<std::ptrdiff_t>(std::min(of_first, both.size()));
+  std::optional<Trajectory> earlier = way_of(both.begin(), cut), later = way_of(cut, both.end());
+  if (!earlier || !later) return std::nullopt;
+  if (earlier->empty() || later->empty()) return earlier->empty() ? later : earlier;
+  if (later->front().stamp < earlier->front().stamp) std::swap(earlier, later);
+  if (later->front().stamp <= earlier->back().stamp) return std::nullopt;
+  earlier->insert(earlier->end(), later->begin(), later->end());
+  return earlier;
+}
 
 slam::StampName as_measured() {
   return [](Stamp stamp) { return stamp; };
@@ -141,9 +173,16 @@ MergeReport merge_maps(const std::string& first, const std::string& second, cons
   RunFolder folder(out, replace);  // not before the work is done: it may take the place of an older one
   folder.write("scenario.yaml", resolved_yaml(scenario));
   folder.write(kMapFile, merged.bytes);
+  folder.write("versions.json", versions().json(2) + "\n");
   folder.save_map(scenario, *mapper, {});
+  const std::vector<slam::MapScan> scans = slam::content_of(*both).scans;
+  const std::optional<Trajectory> way = merged_way(scans, content.scans.size());
+  folder.write("estimate.tum", way_text(way));
+  // Of a run alone: what would stand in them is nothing.
+  for (const char* name : {"estimate_live.tum", "pois.csv", "victims.csv"}) fs::remove(folder.file(name));
   folder.close();
-  MergeReport report = report_of(slam::content_of(*both).scans, content.scans.size());
+  MergeReport report = report_of(scans, content.scans.size());
+  report.has_way = way.has_value();
   report.same = a->bytes == b->bytes;
   return report;
 }

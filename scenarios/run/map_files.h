@@ -5,9 +5,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "base/trajectory.h"
 #include "scenarios/run/run_folder.h"
 #include "slam/map_base.h"
+#include "slam/map_exports.h"
 #include "slam/mapper.h"
 
 namespace rubble::scenarios {
@@ -35,12 +38,17 @@ struct MergeReport {
   double common_m = 0.0;              ///< of the second one's way, within 1 m of where the first one was [m]
   double second_m = 0.0;              ///< all of it [m]
   bool same = false;                  ///< both maps are the same bytes
+  bool has_way = false;               ///< the folder has the way of both runs (merged_way)
 };
 
+/// The key frames of two maps in the order of their time, with `of_first` scans of the first one before those of the
+/// second; nothing where the one drive went on while the other one did: what lies between two poses is then no way.
+std::optional<Trajectory> merged_way(const std::vector<slam::MapScan>& both, std::size_t of_first);
+
 /// Makes one map of those of two runs, in the frame of the first, and writes it into a folder of its own: map.rmap and
-/// the pictures. `out`, `replace`: as of RunFolder, which is made when the maps are one. `progress`: what is done, and
-/// how far it is. Throws InputError when one of them is damaged, they have too little in common, are of two arenas, or
-/// their lasers were mounted differently.
+/// the pictures; estimate.tum holds the merged_way(), or only says why not. `out`, `replace`: as of RunFolder, which is
+/// made when the maps are one. `progress`: what is done, and how far it is. Throws InputError when one of them is
+/// damaged, they have too little in common, are of two arenas, or their lasers were mounted differently.
 MergeReport merge_maps(const std::string& first, const std::string& second, const Scenario& scenario,
                        const std::string& out, bool replace, const slam::MergeProgress& progress = {});
 

@@ -110,6 +110,12 @@ json_holds cut/score.json "j['place_known'] == 0 and j['end'] == 'interrupted'"
 
 "$rubble" merge first mapped --out both >/dev/null || fail "merge ended with $?"
 for name in map.rmap map.tif map.pgm; do [[ -s both/$name ]] || fail "both/$name is missing"; done
+[[ -z $(find both -empty) ]] || fail "a merged folder has empty files: $(find both -empty)"
+grep -q '"commit"' both/versions.json || fail "a merged folder does not say what made it: $(ls both)"
+for name in pois.csv victims.csv estimate_live.tum; do [[ ! -e both/$name ]] || fail "a merged folder has $name, of nothing"; done
+grep -q '^# no way' both/estimate.tum || fail "of two drives at one time there is a way: $(head -3 both/estimate.tum)"
+"$rubble" merge first mapped --out both --force >merge.txt || fail "a merged folder is not replaced: $?"
+grep -qx 'stays with the runs  *victims, logs and scores, and trajectories: both drives cover the same time' merge.txt || fail "what a merged folder has not is not told: $(cat merge.txt)"
 "$rubble" map first --localise both --start 0,0,0 --out in_both >/dev/null || fail "the merged map is no map"
 json_holds in_both/score.json "j['place_known'] == 1"
 

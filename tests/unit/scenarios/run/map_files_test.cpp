@@ -229,6 +229,32 @@ TEST_F(MapFiles, MrptReadsTheSimplemap) {
   EXPECT_GT(agree, 0.95 * occupied);
 }
 
+slam::MapScan scan_at(double seconds, double x) {
+  slam::MapScan scan;
+  scan.scan.stamp = Stamp::from_seconds(seconds);
+  scan.T_map_base = {x, 0.0, 0.0};
+  return scan;
+}
+
+/// In the order of time, whichever of the two was driven first; of the scans of a key frame the first.
+TEST(MergedWay, IsOfBothDrivesWhereTheOneEndedBeforeTheOther) {
+  for (const bool second_is_older : {false, true}) {
+    const double second = second_is_older ? -100.0 : 100.0;
+    const auto way =
+        merged_way({scan_at(1, 1), scan_at(1, 9), scan_at(2, 2), scan_at(second, 3), scan_at(second + 1, 4)}, 3);
+    ASSERT_TRUE(way);
+    std::vector<double> x;
+    for (const StampedPose& stamped : *way) x.push_back(stamped.pose.x);
+    EXPECT_EQ(x, second_is_older ? (std::vector<double>{3, 4, 1, 2}) : (std::vector<double>{1, 2, 3, 4}));
+  }
+}
+
+TEST(MergedWay, IsNoneOfDrivesAtOneTime) {
+  EXPECT_FALSE(merged_way({scan_at(1, 1), scan_at(3, 2), scan_at(2, 3), scan_at(4, 4)}, 2));
+  EXPECT_FALSE(merged_way({scan_at(1, 1), scan_at(2, 2), scan_at(2, 3), scan_at(4, 4)}, 2));
+  EXPECT_FALSE(merged_way({scan_at(2, 1), scan_at(1, 2), scan_at(5, 3)}, 2));
+}
+
 TEST_F(MapFiles, AnotherEndingIsRefused) {
   EXPECT_FALSE(is_map_export("a.rawlog"));
   EXPECT_THROW(export_map(path_, path_ + "/map.xyz"), InputError);
