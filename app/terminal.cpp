@@ -91,6 +91,7 @@ scenarios::RunOptions terminal_options(const std::string& out, bool force) {
     end_progress();
     tell("at " + std::to_string(static_cast<int>(waits.stamp.seconds())) + " s the robot " + waits.why);
   };
+  options.note = tell;
   if (isatty(STDERR_FILENO))
     options.progress = [](const scenarios::Progress& p) {
       std::fprintf(stderr, "\r\033[K%6.1f s  %3.0f %%  %.1f m2 known  %.0f x real time", p.sim_s, 100.0 * p.share,

@@ -60,6 +60,8 @@ class ReplayRobot : public Robot {
   Trajectory in_own_stamps(const Trajectory& trajectory) const;
   /// The same of one scan's stamp; one that no scan was delivered with stays.
   Stamp own_stamp(Stamp delivered) const;
+  /// What was assumed where a log of others says nothing, or contradicts itself: a line each, with the path.
+  const std::vector<std::string>& notes() const;
   /// True when a torn last frame of our own log was dropped.
   bool was_torn() const;
   /// Share of the log played so far, 0..1.

@@ -204,6 +204,8 @@ Stamp ReplayRobot::own_stamp(Stamp delivered) const {
   return name != names.end() && name->delivered == delivered ? name->in_log : delivered;
 }
 
+const std::vector<std::string>& ReplayRobot::notes() const { return impl_->foreign.notes; }
+
 bool ReplayRobot::was_torn() const { return impl_->own && impl_->own->torn(); }
 
 double ReplayRobot::progress() const {

@@ -350,6 +350,8 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   std::vector<scoring::Relation> relations;
   if (!options.relations.empty()) relations = scoring::read_relations(options.relations);
   robot::ReplayRobot robot(log);
+  if (options.note)
+    for (const std::string& note : robot.notes()) options.note(note);
   Scenario resolved = scenario;
   if (resolved.name == "map") resolved.name = as_file_name("map-" + std::filesystem::path(log).stem().stem().string());
   const robot::RobotModel model = recorded_robot(robot, options);

@@ -15,8 +15,11 @@ namespace {
 using mrpt::math::TPose2D;
 using Records = std::vector<CarmenRecord>;
 
-constexpr double kSameLength = 0.3;  ///< scan and odometry poses of one frame agree within this [m]
-constexpr double kSameAngle = 0.2;   ///< and this [rad]
+constexpr double kSameLength = 0.3;    ///< scan and odometry poses of one frame agree within this [m]
+constexpr double kSameAngle = 0.2;     ///< and this [rad]
+constexpr double kFixedLength = 0.05;  ///< a laser keeps its place on the robot within this [m]
+constexpr double kFixedAngle = 0.05;   ///< and this [rad]
+constexpr double kNoMount = 0.001;     ///< one pose written for robot and laser, by who knows no mount [m, rad]
 
 bool repeats_scan_before(const Records& records, std::size_t i) {
   return i > 0 && !records[i].is_scan && records[i - 1].is_scan && identical(records[i].robot, records[i - 1].robot);
@@ -145,26 +148,57 @@ bool scans_follow_odometry(const Records& records) {
          turns[static_cast<std::size_t>(middle)] <= kSameAngle;
 }
 
-/// Whether the laser keeps its place on the robot in all scans.
-bool laser_is_fixed(const Records& records, TPose2D& T_base_laser) {
-  bool found = false;
-  for (const CarmenRecord& record : records) {
-    if (!record.is_scan) continue;
-    const TPose2D mount = record.laser - record.robot;
-    if (!found) T_base_laser = mount;
-    found = true;
-    if (std::hypot(mount.x - T_base_laser.x, mount.y - T_base_laser.y) > 0.05 ||
-        std::abs(wrap_angle(mount.phi - T_base_laser.phi)) > 0.05)
-      return false;
-  }
-  return true;
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
-void place_laser(const CarmenText& text, bool fixed, const TPose2D& seen, RobotModel& model) {
-  model.T_base_laser.x = text.front_laser_offset.value_or(fixed ? seen.x : 0.0);
-  if (!fixed || text.front_laser_offset) return;
-  model.T_base_laser.y = seen.y;
-  model.T_base_laser.yaw = wrap_angle(seen.phi);
+/// Where the laser sits on the robot, by the poses of both in each scan.
+struct SeenMount {
+  TPose2D T_base_laser;  ///< median
+  bool fixed = false;    ///< all scans agree with it
+};
+
+SeenMount seen_mount(const Records& records) {
+  std::vector<TPose2D> mounts;
+  for (const CarmenRecord& record : records)
+    if (record.is_scan) mounts.push_back(record.laser - record.robot);
+  std::vector<double> x, y, turns;
+  for (const TPose2D& mount : mounts) {
+    if (!std::isfinite(mount.x + mount.y + mount.phi)) return {};
+    x.push_back(mount.x);
+    y.push_back(mount.y);
+    turns.push_back(wrap_angle(mount.phi - mounts.front().phi));
+  }
+  if (mounts.empty()) return {};
+  SeenMount seen;
+  seen.T_base_laser = {median(x), median(y), wrap_angle(mounts.front().phi + median(turns))};
+  seen.fixed = std::all_of(mounts.begin(), mounts.end(), [&](const TPose2D& mount) {
+    return std::hypot(mount.x - seen.T_base_laser.x, mount.y - seen.T_base_laser.y) <= kFixedLength &&
+           std::abs(wrap_angle(mount.phi - seen.T_base_laser.phi)) <= kFixedAngle;
+  });
+  return seen;
+}
+
+/// PARAM tells how far ahead the laser sits; the rest is told by the poses of the scans where they keep together, and
+/// are two. Poses that were corrected apart tell no mount.
+void place_laser(const std::optional<double>& ahead, const SeenMount& seen, const std::string& path, ForeignLog& log) {
+  mrpt::math::TPose3D& mount = log.model.T_base_laser;
+  const TPose2D& T_base_laser = seen.T_base_laser;
+  mount.x = ahead.value_or(seen.fixed ? T_base_laser.x : 0.0);
+  const bool one_pose =
+      std::hypot(T_base_laser.x, T_base_laser.y) <= kNoMount && std::abs(T_base_laser.phi) <= kNoMount;
+  if (!seen.fixed || (ahead && one_pose)) return;
+  mount.y = T_base_laser.y;
+  mount.yaw = wrap_angle(T_base_laser.phi);
+  if (std::abs(mount.x - T_base_laser.x) <= kFixedLength) return;
+  char note[200];
+  std::snprintf(note, sizeof note,
+                ": robot_frontlaser_offset puts the laser %.2f m ahead, the poses of its scans %.2f m: %.2f m is taken;"
+                " where the scans are right, delete the PARAM line",
+                mount.x, T_base_laser.x, mount.x);
+  log.notes.push_back(path + note);
 }
 
 }  // namespace
@@ -173,8 +207,7 @@ ForeignLog read_carmen(std::string_view text, const std::string& path) {
   CarmenText carmen = parse_carmen(text, path);
   Records& records = carmen.records;
 
-  TPose2D seen_mount(0, 0, 0);
-  const bool laser_fixed = laser_is_fixed(records, seen_mount);
+  const SeenMount seen = seen_mount(records);
   const bool reanchored = is_reanchored(records);
   const std::vector<TPose2D> corrected = reanchored ? undo_reanchoring(records) : std::vector<TPose2D>{};
   Stamp CarmenRecord::*const clock = choose_clock(records, path);
@@ -186,7 +219,7 @@ ForeignLog read_carmen(std::string_view text, const std::string& path) {
   log.model.name = "carmen";
   if (carmen.robot_length && *carmen.robot_length > 0.0) log.model.length = *carmen.robot_length;
   if (carmen.robot_width && *carmen.robot_width > 0.0) log.model.width = *carmen.robot_width;
-  place_laser(carmen, laser_fixed, seen_mount, log.model);
+  place_laser(carmen.front_laser_offset, seen, path, log);
   log.model.laser.name = "CARMEN laser";
 
   const mrpt::math::TPose3D& mount = log.model.T_base_laser;
@@ -206,7 +239,7 @@ ForeignLog read_carmen(std::string_view text, const std::string& path) {
         log.reference.push_back({record.stamp, wrapped(corrected[scans.size()])});
       else if (!scans_are_raw)
         log.reference.push_back({record.stamp, wrapped(record.robot)});
-      else if (!laser_fixed)
+      else if (!seen.fixed)
         log.reference.push_back({record.stamp, wrapped(record.laser + T_laser_base)});
       record.scan.stamp = record.stamp;
       log.own_stamps.push_back({record.stamp, record.*clock});

@@ -23,6 +23,7 @@ struct ForeignLog {
   Trajectory reference;  ///< T_map_base at the scans' reference times; empty when the log has none
   /// What the log itself calls the scans, where a jittering clock made them be delivered with other stamps.
   std::vector<OwnStamp> own_stamps;
+  std::vector<std::string> notes;  ///< what was assumed against the log or without it, for people: a line each
 };
 
 /// How far a stamp may lie before an earlier one of the same list and still count as jitter of the recorder [s].

@@ -102,6 +102,47 @@ TEST(Carmen, CorrectedLaserPosesBecomeTheReference) {
     expect_near(read.reference[i].pose, path[i] + TPose2D(0, 0, 0.01 * static_cast<double>(i)));
     expect_near(odometry[i].pose, path[i]);
   }
+  EXPECT_EQ(read.model.T_base_laser.x, 0.1);
+  EXPECT_EQ(read.model.T_base_laser.yaw, 0.0) << "poses that were corrected apart tell no mount";
+  EXPECT_TRUE(read.notes.empty());
+}
+
+/// A log whose scans say by their poses that the laser sits at `T_base_laser`.
+std::string mounted_at(const TPose2D& T_base_laser, const std::string& head) {
+  CarmenWriter log;
+  log.text = head;
+  const auto path = arc(30);
+  for (std::size_t i = 0; i < path.size(); ++i)
+    log.flaser(kRanges, path[i] + T_base_laser, path[i], 0.1 * static_cast<double>(i));
+  return log.text;
+}
+
+TEST(Carmen, TheScansTellWhereTheLaserLooksAlsoWherePARAMTellsHowFarAheadItIs) {
+  for (const TPose2D& seen : {TPose2D(0.1, 0.05, 0.5 * kPi), TPose2D(0.1, 0, kPi), TPose2D(0.1, 0, 0)}) {
+    const ForeignLog read = read_carmen(mounted_at(seen, "PARAM robot_frontlaser_offset 0.1 nohost 0\n"), "a.log");
+    const mrpt::math::TPose3D& mount = read.model.T_base_laser;
+    expect_near({mount.x, mount.y, mount.yaw}, seen);
+    EXPECT_TRUE(read.notes.empty());
+    EXPECT_TRUE(read.reference.empty());
+  }
+}
+
+TEST(Carmen, ALaserThatTheScansPutElsewhereThanPARAMIsTold) {
+  const ForeignLog read =
+      read_carmen(mounted_at({0.1, 0, kPi}, "PARAM robot_frontlaser_offset 0.3 nohost 0\n"), "a.log");
+  expect_near({read.model.T_base_laser.x, read.model.T_base_laser.y, read.model.T_base_laser.yaw}, {0.3, 0, kPi});
+  ASSERT_EQ(read.notes.size(), 1u);
+  EXPECT_EQ(
+      read.notes[0].find("a.log: robot_frontlaser_offset puts the laser 0.30 m ahead, the poses of its scans 0.10"), 0u)
+      << read.notes[0];
+}
+
+TEST(Carmen, OnePoseForRobotAndLaserContradictsNothing) {
+  const ForeignLog read = read_carmen(mounted_at({0, 0, 0}, "PARAM robot_frontlaser_offset -0.04 nohost 0\n"), "a.log");
+  EXPECT_EQ(read.model.T_base_laser.x, -0.04);
+  EXPECT_EQ(read.model.T_base_laser.y, 0.0);
+  EXPECT_EQ(read.model.T_base_laser.yaw, 0.0);
+  EXPECT_TRUE(read.notes.empty());
 }
 
 TEST(Carmen, ScanPosesApartFromTheOdometryLinesAreTheReference) {
