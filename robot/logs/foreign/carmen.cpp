@@ -216,6 +216,7 @@ ForeignLog read_carmen(std::string_view text, const std::string& path) {
 
   ForeignLog log;
   log.format = "CARMEN log";
+  log.notes = std::move(carmen.notes);
   log.model.name = "carmen";
   if (carmen.robot_length && *carmen.robot_length > 0.0) log.model.length = *carmen.robot_length;
   if (carmen.robot_width && *carmen.robot_width > 0.0) log.model.width = *carmen.robot_width;

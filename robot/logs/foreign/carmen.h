@@ -29,6 +29,7 @@ struct CarmenText {
   std::optional<double> front_laser_offset;  ///< of the laser ahead of the robot's centre [m]
   std::optional<double> robot_length;        ///< [m]
   std::optional<double> robot_width;         ///< [m]
+  std::vector<std::string> notes;            ///< as in ForeignLog
 };
 
 /// True when the first lines look like a CARMEN text log.

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <utility>
 
 #include "base/angle.h"
@@ -16,6 +18,8 @@ using mrpt::math::TPose2D;
 constexpr double kNoReturn = 30.0;  // FLASER says no limit; SICK scanners in these logs write 30 m and more for it [m]
 constexpr double kFarthestRange = 1000.0;  ///< of any scanner; more is a log in another unit [m]
 constexpr std::int64_t kMaxBeams = 100000;
+constexpr double kWidestInRadians = 6.3;     ///< a larger field of view is in degrees
+constexpr double kCoarsestInRadians = 0.03;  ///< of an angle between beams; a larger one is in degrees
 
 bool is_keyword(std::string_view word) {
   return !word.empty() && std::isupper(static_cast<unsigned char>(word[0])) != 0 &&
@@ -57,14 +61,11 @@ void take_odom(TextFields& fields, CarmenRecord& record) {
   take_stamps(fields, record);
 }
 
+// The bearings are set when all PARAM lines are read.
 // FLASER n r1 .. rn x y theta odom_x odom_y odom_theta ipc_timestamp ipc_hostname logger_timestamp
 void take_flaser(TextFields& fields, CarmenRecord& record) {
   record.is_scan = true;
   const std::int64_t count = fields.integer("num_readings", 2, kMaxBeams);
-  // 181 or 361 beams cover the half circle with both ends, 180 or 360 leave out the last one.
-  const auto intervals = static_cast<double>(count % 2 == 1 ? count - 1 : count);
-  record.scan.angle_min = -0.5 * kPi;
-  record.scan.angle_step = kPi / intervals;
   record.scan.range_max = kNoReturn;
   take_ranges(fields, count, record.scan);
   record.laser = take_pose(fields, "laser pose");
@@ -100,11 +101,83 @@ void take_robotlaser(TextFields& fields, CarmenRecord& record) {
   take_stamps(fields, record);
 }
 
-void take_param(TextFields& fields, CarmenText& log) {
+/// What PARAM lines tell of the front laser.
+struct FrontLaser {
+  std::optional<double> field_of_view;  ///< [rad]
+  std::optional<double> resolution;     ///< [rad]
+};
+
+/// The angle of a PARAM line, which some write in degrees and some in radians; nothing where it is none ("none").
+std::optional<double> take_angle(TextFields& fields, double most_radians) {
+  const std::string_view field = fields.text("angle");
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  const bool is_number = error == std::errc{} && end == field.data() + field.size();
+  if (!is_number || !(value > 0.0 && value <= 360.0)) return std::nullopt;
+  return value > most_radians ? deg_to_rad(value) : value;
+}
+
+void take_param(TextFields& fields, CarmenText& log, FrontLaser& laser) {
   const std::string_view name = fields.text("parameter name");
+  if (name == "laser_front_laser_fov") laser.field_of_view = take_angle(fields, kWidestInRadians);
+  if (name == "laser_front_laser_resolution") laser.resolution = take_angle(fields, kCoarsestInRadians);
   if (name == "robot_frontlaser_offset") log.front_laser_offset = fields.number("robot_frontlaser_offset");
   if (name == "robot_length") log.robot_length = fields.number("robot_length");
   if (name == "robot_width") log.robot_width = fields.number("robot_width");
+}
+
+/// The angle from the first beam to the last, or to where one more would be, and how many steps it has.
+struct Fan {
+  double width = kPi;
+  double steps = 0.0;
+};
+
+/// As SICK scanners have it: 181 or 361 beams cover the half circle with both ends, 180 or 360 leave out the last one.
+Fan half_circle(std::size_t beams) { return {kPi, static_cast<double>(beams % 2 == 1 ? beams - 1 : beams)}; }
+
+bool is_usual(const Fan& fan) {
+  constexpr std::array<double, 5> kUsual{90.0, 180.0, 360.0, 720.0, 1440.0};
+  return std::find(kUsual.begin(), kUsual.end(), fan.steps) != kUsual.end();
+}
+
+/// What PARAM tells, where it goes with the number of beams.
+std::optional<Fan> told_fan(const FrontLaser& laser, std::size_t beams) {
+  Fan fan = half_circle(beams);
+  const double half_steps = fan.steps;
+  if (laser.field_of_view && laser.resolution) {
+    const double told = *laser.field_of_view / *laser.resolution;
+    const auto all = static_cast<double>(beams);
+    fan.steps = std::abs(told - all) < std::abs(told - (all - 1.0)) ? all : all - 1.0;
+    if (std::abs(told - fan.steps) > 0.6) return std::nullopt;
+  }
+  fan.width = laser.resolution ? *laser.resolution * fan.steps : *laser.field_of_view;
+  if (fan.width > 2.0 * kPi + kCoarsestInRadians || fan.width < 1e-5 * fan.steps) return std::nullopt;
+  // Rounded in the file.
+  if (fan.steps == half_steps && std::abs(fan.width - kPi) < 1e-3) return half_circle(beams);
+  // Logs of every other beam keep the head of the whole.
+  if (!laser.field_of_view && is_usual(half_circle(beams))) return std::nullopt;
+  return fan;
+}
+
+/// FLASER lines tell only how many beams they have.
+void set_bearings(const FrontLaser& laser, const std::string& path, CarmenText& log) {
+  const bool tells = laser.field_of_view || laser.resolution;
+  for (CarmenRecord& record : log.records) {
+    if (!record.is_scan) continue;
+    const std::size_t beams = record.scan.ranges.size();
+    const std::optional<Fan> told = tells ? told_fan(laser, beams) : std::nullopt;
+    const Fan fan = told.value_or(half_circle(beams));
+    record.scan.angle_min = -0.5 * fan.width;
+    record.scan.angle_step = fan.width / fan.steps;
+    if (told || !log.notes.empty() || (!tells && is_usual(fan))) continue;
+    log.notes.push_back(path + ": " +
+                        (tells
+                             ? "laser_front_laser_fov or laser_front_laser_resolution does not go with FLASER lines of "
+                             : "nothing tells the field of view of FLASER lines of ") +
+                        std::to_string(beams) + " beams: 180 deg are assumed; " +
+                        (tells ? "correct these PARAM lines"
+                               : "if it is another, add the line: PARAM laser_front_laser_fov <degrees>"));
+  }
 }
 
 }  // namespace
@@ -124,6 +197,7 @@ bool is_carmen(std::string_view text) {
 
 CarmenText parse_carmen(std::string_view text, const std::string& path) {
   CarmenText log;
+  FrontLaser laser;
   std::string_view scan_keyword;  // a log may carry each scan in both forms; the first one met is read
   TextLines lines(text);
   while (lines.next()) {
@@ -134,7 +208,7 @@ CarmenText parse_carmen(std::string_view text, const std::string& path) {
       fields.fail("'" + std::string(keyword.substr(0, 40)) +
                   "' is no CARMEN message (FLASER, ROBOTLASER1, ODOM, PARAM, ...); correct or delete the line");
     const bool is_scan = keyword == "FLASER" || keyword == "ROBOTLASER1";
-    if (keyword == "PARAM") take_param(fields, log);
+    if (keyword == "PARAM") take_param(fields, log, laser);
     if (!is_scan && keyword != "ODOM") continue;
     if (is_scan && scan_keyword.empty()) scan_keyword = keyword;
     if (is_scan && keyword != scan_keyword) continue;
@@ -147,6 +221,7 @@ CarmenText parse_carmen(std::string_view text, const std::string& path) {
   }
   if (scan_keyword.empty())
     throw InputError(path + ": the CARMEN log holds no FLASER or ROBOTLASER1 line; give a log with laser scans");
+  if (scan_keyword == "FLASER") set_bearings(laser, path, log);
   return log;
 }
 

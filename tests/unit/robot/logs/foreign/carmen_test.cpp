@@ -20,6 +20,7 @@ using testing::message_of;
 using testing::scans_of;
 
 const std::vector<double> kRanges{1.0, 2.5, 81.83, 0.0, 3.0};
+const std::string kHalfCircle = "PARAM laser_front_laser_fov 180 nohost 0\n";
 
 Trajectory odometry_of(const ForeignLog& log) {
   Trajectory path;
@@ -89,7 +90,7 @@ TEST(Carmen, ReanchoredLogGivesBackTheRawOdometryAndTheReference) {
 TEST(Carmen, CorrectedLaserPosesBecomeTheReference) {
   const auto path = arc(30);
   CarmenWriter log;
-  log.text = "PARAM robot_frontlaser_offset 0.1 nohost 0\n";
+  log.text = kHalfCircle + "PARAM robot_frontlaser_offset 0.1 nohost 0\n";
   for (std::size_t i = 0; i < path.size(); ++i) {
     const TPose2D truth = path[i] + TPose2D(0, 0, 0.01 * static_cast<double>(i));
     log.flaser(kRanges, truth + TPose2D(0.1, 0, 0), path[i], 0.1 * static_cast<double>(i));
@@ -110,7 +111,7 @@ TEST(Carmen, CorrectedLaserPosesBecomeTheReference) {
 /// A log whose scans say by their poses that the laser sits at `T_base_laser`.
 std::string mounted_at(const TPose2D& T_base_laser, const std::string& head) {
   CarmenWriter log;
-  log.text = head;
+  log.text = kHalfCircle + head;
   const auto path = arc(30);
   for (std::size_t i = 0; i < path.size(); ++i)
     log.flaser(kRanges, path[i] + T_base_laser, path[i], 0.1 * static_cast<double>(i));
@@ -214,6 +215,67 @@ TEST(Carmen, BeamCountTellsTheStep) {
   }
 }
 
+ForeignLog fan_of(std::size_t beams, const std::string& head) {
+  CarmenWriter log;
+  log.text = head;
+  log.flaser(std::vector<double>(beams, 1.0), {}, {}, 1.0);
+  return read_carmen(log.text, "a.log");
+}
+
+TEST(Carmen, PARAMTellsTheFieldOfViewInDegreesOrRadiansWhereItGoesWithTheBeams) {
+  const struct {
+    std::size_t beams;
+    std::string fov, resolution;
+    double min_deg, step_deg;
+  } cases[] = {
+      {401, "1.74533", "0.25", -50.0, 0.25}, {401, "100", "0.25", -50.0, 0.25},  {401, "", "0.25", -50.0, 0.25},
+      {401, "100", "0.00436332", -50, 0.25}, {541, "270", "", -135.0, 0.5},      {1080, "270", "0.25", -135.0, 0.25},
+      {361, "3.14159", "0.5", -90.0, 0.5},   {360, "", "0.5", -90.0, 0.5},       {181, "180", "none", -90.0, 1.0},
+      {682, "240", "0.352", -119.9, 0.352},  {721, "6.28319", "0.5", -180, 0.5},
+  };
+  for (const auto& c : cases) {
+    std::string head;
+    if (!c.fov.empty()) head += "PARAM laser_front_laser_fov " + c.fov + " nohost 0\n";
+    if (!c.resolution.empty()) head += "PARAM laser_front_laser_resolution " + c.resolution + " nohost 0\n";
+    SCOPED_TRACE(std::to_string(c.beams) + "\n" + head);
+    const ForeignLog read = fan_of(c.beams, head);
+    EXPECT_NEAR(rad_to_deg(read.model.laser.angle_step), c.step_deg, 1e-5);
+    EXPECT_NEAR(rad_to_deg(read.model.laser.angle_min), c.min_deg, 0.2);
+    EXPECT_TRUE(read.notes.empty()) << read.notes[0];
+  }
+  // The half circle to the bit, however it is rounded in the head.
+  const double step = fan_of(361, "").model.laser.angle_step;
+  EXPECT_EQ(fan_of(361, "PARAM laser_front_laser_fov 3.14159\nPARAM laser_front_laser_resolution 0.5\n")
+                .model.laser.angle_step,
+            step);
+}
+
+TEST(Carmen, AFieldOfViewThatIsOnlyAssumedIsTold) {
+  const struct {
+    std::size_t beams;
+    std::string head, note;
+  } cases[] = {
+      {101, "", "a.log: nothing tells the field of view of FLASER lines of 101 beams: 180 deg are assumed"},
+      {541, "", "a.log: nothing tells the field of view of FLASER lines of 541 beams: 180 deg are assumed"},
+      {181, "PARAM laser_front_laser_fov 270\nPARAM laser_front_laser_resolution 0.5\n",
+       "a.log: laser_front_laser_fov or"},
+      {180, "PARAM laser_front_laser_resolution 0.5\n", "a.log: laser_front_laser_fov or"},
+      {1000, "PARAM laser_front_laser_resolution 1\n", "a.log: laser_front_laser_fov or"},
+      {181, "PARAM laser_front_laser_fov none\n", ""},
+      {181, "PARAM laser_front_laser_fov 0\n", ""},
+      {181, "PARAM laser_front_laser_fov nan\n", ""},
+  };
+  for (const auto& c : cases) {
+    SCOPED_TRACE(std::to_string(c.beams) + "\n" + c.head);
+    const ForeignLog read = fan_of(c.beams, c.head);
+    EXPECT_EQ(read.model.laser.angle_min, -0.5 * kPi);
+    ASSERT_EQ(read.notes.size(), c.note.empty() ? 0u : 1u);
+    for (const std::string& note : read.notes) EXPECT_EQ(note.find(c.note), 0u) << note;
+  }
+  for (const std::size_t beams : {90u, 91u, 180u, 181u, 360u, 361u, 720u, 721u})
+    EXPECT_TRUE(fan_of(beams, "").notes.empty()) << beams;
+}
+
 TEST(Carmen, RobotLaserLinesBringTheirOwnGeometry) {
   const std::string text =
       "ROBOTLASER1 0 -2.0943951 4.1887902 0.0061359 5.6 0.01 0 3 1.5 5.6 0.7 2 100 200 "
@@ -225,6 +287,7 @@ TEST(Carmen, RobotLaserLinesBringTheirOwnGeometry) {
   EXPECT_EQ(scans[0].angle_min, -2.0943951);
   EXPECT_EQ(scans[0].angle_step, 0.0061359);
   EXPECT_EQ(scans[0].range_max, 5.6);
+  EXPECT_TRUE(read.notes.empty());
   EXPECT_EQ(scans[0].stamp.ns, 12500000000);
   EXPECT_EQ(read.ticks[0].odometry[0].v, 0.3);
   EXPECT_NEAR(read.model.T_base_laser.x, 0.1 * std::cos(0.5), 1e-9);
