@@ -177,7 +177,8 @@ int show(const scenarios::RunReport& report) {
   if (const auto lost = score["hits_outside"].get<std::uint64_t>(); lost > 0)
     print_row("NOT MAPPED", std::to_string(lost) + " laser hits lay beyond the largest map (mapper.max_map_cells)");
   if (const auto dropped = score["scans_out_of_order"].get<std::uint64_t>(); dropped > 0)
-    print_row("NOT MAPPED", std::to_string(dropped) + " scans were empty or not younger than the one before");
+    print_row("NOT MAPPED", std::to_string(dropped) +
+                                " scans were empty, not younger than the one before, or of angles that no scanner has");
   const bool turns_against = score.value("turns_against", 0.0) > 0.0;
   if (score.value("map_doubted", 0.0) > 0.0 && !turns_against)
     print_row("DOUBTFUL MAP", score["frames_doubled"].dump() + " of " + score["key_frames"].dump() +

@@ -1,13 +1,11 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "robot/measurements.h"
-#include "robot/model.h"
+#include "robot/beam_order.h"
 
 namespace rubble::robot {
 
@@ -56,12 +54,9 @@ class Scanner {
 /// The scan of a scanner that hangs upside down: its beams run clockwise, so the last one is the first.
 inline void turn_over(LaserScan& scan) {
   if (scan.ranges.empty()) return;
-  const std::size_t last = scan.ranges.size() - 1;
-  scan.stamp = scan.beam_stamp(last);
-  scan.beam_period = -scan.beam_period;
-  scan.angle_min = -scan.bearing(last);
-  std::reverse(scan.ranges.begin(), scan.ranges.end());
-  std::reverse(scan.codes.begin(), scan.codes.end());
+  reverse_beams(scan);
+  scan.angle_min = -scan.angle_min;
+  scan.angle_step = -scan.angle_step;
 }
 
 }  // namespace rubble::robot

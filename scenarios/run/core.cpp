@@ -1,6 +1,9 @@
 #include "scenarios/run/core.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "robot/beam_order.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -25,12 +28,14 @@ explore::Mission mission_of(const Scenario& scenario) {
 
 Core::Core(const Scenario& scenario, const robot::RobotModel& model, bool explore, const std::string& run_folder,
            std::shared_ptr<const slam::MapBase> base)
-    : mapper_(scenario.mapper.make(model, {scenario.seed, run_folder, std::move(base)})),
+    : mapper_(scenario.mapper.make(robot::counter_clockwise(model), {scenario.seed, run_folder, std::move(base)})),
       levelling_(scenario.levelling, model) {
   if (explore) explorer_ = scenario.explorer.make(model, mission_of(scenario));
 }
 
 robot::Commands Core::step(const robot::Inputs& inputs) {
+  if (std::any_of(inputs.scans.begin(), inputs.scans.end(), robot::is_clockwise))
+    return step(robot::counter_clockwise(inputs));
   mapper_->update(inputs);
   watch(inputs);
   robot::Commands commands;

@@ -26,7 +26,8 @@ class Core {
   Core(const Scenario& scenario, const robot::RobotModel& model, bool explore, const std::string& run_folder,
        std::shared_ptr<const slam::MapBase> base = nullptr);
 
-  /// Digests one tick and decides the commands for the next.
+  /// Digests one tick and decides the commands for the next. Scans that run clockwise are turned round here: whatever
+  /// comes behind takes them to be as LaserScan says.
   robot::Commands step(const robot::Inputs& inputs);
 
   const slam::Mapper& mapper() const { return *mapper_; }

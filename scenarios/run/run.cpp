@@ -391,8 +391,11 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
     report.broken.push_back(options.relations + ": none of its relations lies in the time of " + log +
                             "; give those of the same log");
   // A run that was cut short had no time to find it.
-  if (placeless && !end.interrupted && end.failure.empty())
-    report.broken.push_back(knows_no_place_in(core.mapper(), *options.base, robot.was_torn()));
+  const bool whole = !end.interrupted && end.failure.empty();
+  if (placeless && whole) report.broken.push_back(knows_no_place_in(core.mapper(), *options.base, robot.was_torn()));
+  if (!placeless && whole && evidence.run->area_known_m2 == 0.0)
+    report.broken.push_back(log + ": nothing is mapped: none of its " + std::to_string(core.mapper().counts().scans) +
+                            " scans can be used; are their ranges, angles and times right?");
   return report;
 }
 

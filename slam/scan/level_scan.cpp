@@ -123,7 +123,7 @@ ScanPoints LevelScan::points(const robot::LaserScan& scan, const SweepMotion* mo
   const double cap = config_.max_range > 0.0 ? std::min(config_.max_range, limit) : limit;
   const bool carve = config_.carve_misses && (known || config_.max_range > 0.0);
   // Beams beyond one full turn would see the same directions twice.
-  const double turn = 2.0 * kPi / scan.angle_step + 1e-6;  // infinite for a single beam that tells no step
+  const double turn = 2.0 * kPi / std::abs(scan.angle_step) + 1e-6;  // infinite for a single beam that tells no step
   const auto beams = static_cast<std::size_t>(std::min(static_cast<double>(scan.ranges.size()), turn));
   points.hits.reserve(beams);
   points.rays.reserve(beams);

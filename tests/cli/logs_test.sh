@@ -23,6 +23,14 @@ if command -v rawlog-edit >/dev/null; then
   rawlog-edit --info -i run.rawlog >info.txt 2>&1 || fail "rawlog-edit cannot read the export: $(tail -3 info.txt)"
   grep -q LASER info.txt || fail "rawlog-edit sees no LASER"
 fi
+# A map of nothing is no success.
+for i in 1 2 3; do echo "FLASER 5 0 0 0 0 0 0 0 0 0 0 0 $i host $i"; done >dark.log
+expect_exit 1 '' "$rubble" map dark.log --out dark
+grep -q 'dark.log: nothing is mapped: none of its 3 scans can be used' out.txt || fail "an empty map is not told: $(cat out.txt)"
+# What is only assumed about a log is told.
+for i in 1 2 3; do echo "FLASER 5 1 1 1 1 1 0 0 0 0 0 0 $i host $i"; done >fan.log
+"$rubble" map fan.log --out fan >/dev/null 2>err.txt
+grep -q 'fan.log: nothing tells the field of view of FLASER lines of 5 beams' err.txt || fail "an assumed fan is not told: $(cat err.txt)"
 sed 's/$/\r/' run/log.rlog >text.rlog
 expect_exit 3 'a transfer as text' "$rubble" map text.rlog
 # Of a log whose first frame is damaged nothing is worth keeping.
