@@ -39,12 +39,12 @@ std::optional<mrpt::math::TPose2D> pose_of(const std::string& option, const std:
 
 /// A log brings its robot along: of what else was set nothing holds.
 void tell_vain_settings(const std::vector<scenarios::Override>& overrides) {
-  for (const auto& [key, value] : overrides) {
-    const std::string section = key.substr(0, key.find_first_of(".={"));
+  for (const scenarios::Override& set : overrides) {
+    const std::string section = set.key.substr(0, set.key.find_first_of(".={"));
     for (const char* vain : {"robot", "levelling", "sim", "arena", "time_limit_s"})
       if (section == vain)
-        tell("--set " + key + ": has no effect on a log, whose robot and arena are as it was recorded" +
-             (key.rfind("robot.laser", 0) == 0 ? "; where the laser sits is told by --laser" : ""));
+        tell("--set " + set.key + ": has no effect on a log, whose robot and arena are as it was recorded" +
+             (set.key.rfind("robot.laser", 0) == 0 ? "; where the laser sits is told by --laser" : ""));
   }
 }
 
