@@ -42,6 +42,11 @@ bool exact_nanoseconds(std::string_view text, std::int64_t& ns) {
 
 }  // namespace
 
+TextLines::TextLines(std::string_view text) : rest_(text) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (rest_.substr(0, kByteOrderMark.size()) == kByteOrderMark) rest_.remove_prefix(kByteOrderMark.size());
+}
+
 bool TextLines::next() {
   if (rest_.empty()) return false;
   const std::size_t end = rest_.find('\n');

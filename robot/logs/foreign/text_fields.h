@@ -8,10 +8,10 @@
 
 namespace rubble::robot {
 
-/// The lines of a text, numbered from 1, without line ends.
+/// The lines of a text, numbered from 1, without line ends and without the byte order mark that some editors set.
 class TextLines {
  public:
-  explicit TextLines(std::string_view text) : rest_(text) {}
+  explicit TextLines(std::string_view text);
   /// False behind the last line.
   bool next();
   std::string_view line() const { return line_; }

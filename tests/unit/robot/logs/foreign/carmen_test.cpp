@@ -436,6 +436,22 @@ TEST(Carmen, TheTimeFromTheFirstToTheLastHas64Bits) {
   EXPECT_NE(message.find("is not a time in seconds"), std::string::npos) << "once: it jumps back; " << message;
 }
 
+TEST(Carmen, AByteOrderMarkBeforeTheFirstLineIsPassedOver) {
+  const std::string text =
+      "\xef\xbb\xbf"
+      "FLASER 2 1 1 0 0 0 0 0 0 1 h 1\n";
+  EXPECT_TRUE(is_carmen(text));
+  EXPECT_EQ(scans_of(read_carmen(text, "a.log")).size(), 1u);
+  EXPECT_FALSE(is_carmen("\xef\xbb" + text));
+  const std::string message = message_of<InputError>([&] {
+    read_carmen(
+        "\xef\xbb\xbf"
+        "ODOM 1 x\n",
+        "a.log");
+  });
+  EXPECT_EQ(message.find("a.log:1:8: 'x'"), 0u) << message;
+}
+
 TEST(Carmen, LogWithoutScansSaysSo) {
   const std::string message = message_of<InputError>([] { read_carmen("ODOM 1 2 3 0 0 0 1 h 1\n", "a.log"); });
   EXPECT_NE(message.find("no FLASER"), std::string::npos) << message;
