@@ -52,20 +52,23 @@ void MrptMapper::take(const robot::LaserScan& scan) {
   for (const auto& p_base : points.hits) last_hits_.push_back(to_map(p_base));
 }
 
-/// The points of a sweep as beams of a scan taken all at once; of several in one beam the nearest.
+/// The points of a sweep as beams of a scan taken all at once; of several in one beam the nearest. MRPT turns them by
+/// the whole mount, so they are seen as a laser sees them that hangs from its mount upside down or inclined.
 robot::LaserScan MrptMapper::as_instant(const robot::LaserScan& scan, const ScanPoints& points) const {
   robot::LaserScan instant = scan;
   instant.stamp = scan.middle();
   instant.beam_period = 0.0;
   std::fill(instant.ranges.begin(), instant.ranges.end(), std::numeric_limits<float>::quiet_NaN());
+  const auto R = model_.T_base_laser.getRotationMatrix();
+  const double determinant = R(0, 0) * R(1, 1) - R(0, 1) * R(1, 0);
   for (const auto& p_base : points.hits) {
     const double dx = p_base.x - points.origin.x, dy = p_base.y - points.origin.y;
-    const double bearing = std::atan2(dy, dx) - model_.T_base_laser.yaw;
-    const double turned = std::fmod(bearing - scan.angle_min + 4.0 * kPi, 2.0 * kPi);
+    const double x = (R(1, 1) * dx - R(0, 1) * dy) / determinant, y = (R(0, 0) * dy - R(1, 0) * dx) / determinant;
+    const double turned = std::fmod(std::atan2(y, x) - scan.angle_min + 4.0 * kPi, 2.0 * kPi);
     const double beam = std::round(turned / scan.angle_step);
-    if (beam >= static_cast<double>(scan.ranges.size())) continue;
+    if (!(beam < static_cast<double>(scan.ranges.size()))) continue;
     float& range = instant.ranges[static_cast<std::size_t>(beam)];
-    const auto distance = static_cast<float>(length(dx, dy));
+    const auto distance = static_cast<float>(length(x, y));
     if (!(range <= distance)) range = distance;
   }
   return instant;

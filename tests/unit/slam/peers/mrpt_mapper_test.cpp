@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "robot/beam_order.h"
 #include "slam/peers/mrpt_mapper.h"
 #include "tests/support/slam_outcome.h"
 #include "tests/support/slam_world.h"
@@ -15,7 +16,8 @@ using mrpt::math::TPoint2D;
 using robot::Inputs;
 
 struct MrptIcpMapper : MrptMapper {
-  MrptIcpMapper() : MrptMapper({}, MrptIcpConfig().resolution, mrpt_slam().icp_builder({}, {})) {}
+  explicit MrptIcpMapper(const robot::RobotModel& model = {})
+      : MrptMapper(model, MrptIcpConfig().resolution, mrpt_slam().icp_builder(model, {})) {}
 };
 
 const std::vector<TPoint2D> kTour{{0.0, 0.0}, {3.0, 0.2}, {3.0, 1.0}, {0.5, 0.5}, {0.0, 0.0}};
@@ -82,6 +84,33 @@ TEST(MrptMapper, MapsTheRoomBetterThanTheOdometry) {
   EXPECT_LT(outcome.rmse, 0.1);
   EXPECT_LT(outcome.outside, 0.05);
   EXPECT_GT(outcome.occupied, 300);
+}
+
+/// The scan of a laser on its head is that of one upright, told from right to left.
+TEST(MrptMapper, AScannerUpsideDownMapsTheRoomAsWell) {
+  const slam_test::Drive drive = slam_test::drive_through(kTour, 0.0);
+  std::vector<Inputs> ticks = recorded(drive, 1);
+  for (Inputs& tick : ticks)
+    for (robot::LaserScan& scan : tick.scans) {
+      robot::reverse_beams(scan);
+      scan.angle_min = -scan.angle_min;
+      scan.angle_step = -scan.angle_step;
+    }
+  for (const bool pitched : {false, true}) {
+    robot::RobotModel model;
+    if (pitched) {  // over its front: it looks backwards as well
+      model.T_base_laser.pitch = kPi;
+      for (Inputs& tick : ticks)
+        for (robot::LaserScan& scan : tick.scans) scan.angle_min += kPi;
+    } else {
+      model.T_base_laser.roll = kPi;
+    }
+    MrptIcpMapper mapper(model);
+    const slam_test::Outcome outcome = slam_test::play(mapper, ticks, slam_test::furnished_room(), drive.truth);
+    EXPECT_LT(outcome.rmse, 0.1) << pitched;
+    EXPECT_LT(outcome.outside, 0.05) << pitched;
+    EXPECT_GT(outcome.occupied, 300) << pitched;
+  }
 }
 
 TEST(MrptMapper, EveryScanHasItsPlaceOnTheTrajectory) {
