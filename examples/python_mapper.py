@@ -29,6 +29,13 @@ def between(a, b):
     return (c * dx + s * dy, c * dy - s * dx, wrap(b[2] - a[2]))
 
 
+def axes_from_above(roll, pitch, yaw):
+    """Where a laser mounted so looks ahead and to its left, seen from above: two directions (x, y) of the base frame."""
+    cr, sr, cp, sp = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch)
+    c, s = math.cos(yaw), math.sin(yaw)
+    return (c * cp, s * cp), (c * sp * sr - s * cr, s * sp * sr + c * cr)
+
+
 def wrap(angle):
     return math.remainder(angle, 2.0 * math.pi)
 
@@ -112,7 +119,9 @@ class Grid:
 
 class Mapper:
     def __init__(self, header):
-        self.laser = (float(header["laser.x_m"]), float(header["laser.y_m"]), float(header["laser.yaw_rad"]))
+        self.laser = (float(header["laser.x_m"]), float(header["laser.y_m"]))
+        # A laser that hangs upside down sees left and right exchanged.
+        self.ahead, self.left = axes_from_above(*(float(header["laser.%s_rad" % turn]) for turn in ("roll", "pitch", "yaw")))
         self.grid = Grid()
         self.odometry = []  # (stamp [ns], pose, v, w), the last second
         self.T_map_odom = (0.0, 0.0, 0.0)
@@ -146,8 +155,10 @@ class Mapper:
         for i, r in enumerate(ranges):
             if not range_min <= r <= range_max:  # also what is inf or nan
                 continue
-            bearing = self.laser[2] + angle_min + i * angle_step
-            x, y = self.laser[0] + r * math.cos(bearing), self.laser[1] + r * math.sin(bearing)
+            bearing = angle_min + i * angle_step
+            c, s = r * math.cos(bearing), r * math.sin(bearing)
+            x = self.laser[0] + c * self.ahead[0] + s * self.left[0]
+            y = self.laser[1] + c * self.ahead[1] + s * self.left[1]
             late = (i - len(ranges) // 2) * beam_period
             turn = w * late
             found.append((x - turn * y + v * late, y + turn * x))

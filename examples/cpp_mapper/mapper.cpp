@@ -30,6 +30,18 @@ Pose inverse(const Pose& a) {
   return {-c * a.x - s * a.y, s * a.x - c * a.y, -a.phi};
 }
 
+/// Turns a direction in the plane of the scan into one in the base frame, as seen from above: a laser that hangs upside
+/// down sees left and right exchanged.
+struct Mount {
+  double ahead_x, ahead_y, left_x, left_y;
+
+  Mount(double roll, double pitch, double yaw)
+      : ahead_x(std::cos(yaw) * std::cos(pitch)),
+        ahead_y(std::sin(yaw) * std::cos(pitch)),
+        left_x(std::cos(yaw) * std::sin(pitch) * std::sin(roll) - std::sin(yaw) * std::cos(roll)),
+        left_y(std::sin(yaw) * std::sin(pitch) * std::sin(roll) + std::cos(yaw) * std::cos(roll)) {}
+};
+
 /// Counts of sightings and of hits a cell.
 struct Grid {
   static constexpr int kSide = 800;            // cells
@@ -84,7 +96,8 @@ int main() {
   std::printf("ready 1\n");
   std::fflush(stdout);
 
-  const Pose T_base_laser{header["laser.x_m"], header["laser.y_m"], header["laser.yaw_rad"]};
+  const Pose p_base_laser{header["laser.x_m"], header["laser.y_m"], 0.0};
+  const Mount mount(header["laser.roll_rad"], header["laser.pitch_rad"], header["laser.yaw_rad"]);
   Grid grid;
   Pose T_odom_first, pose, drawn;
   bool has_odometry = false, changed = false;
@@ -110,15 +123,17 @@ int main() {
       number(words);  // the time between two beams
       const double range_min = number(words), range_max = number(words);
       const int beams = static_cast<int>(number(words));
-      const Pose T_map_laser = compose(pose, T_base_laser);
+      const Pose laser = compose(pose, p_base_laser);  // its place; headed as the base
+      const double c = std::cos(laser.phi), s = std::sin(laser.phi);
       for (int beam = 0; beam < beams; ++beam) {
         const double range = number(words);
         if (!(range >= range_min && range <= range_max)) continue;  // nothing in range, or no measurement
-        const double bearing = T_map_laser.phi + angle_min + beam * angle_step;
-        const double dx = std::cos(bearing), dy = std::sin(bearing);
+        const double ahead = std::cos(angle_min + beam * angle_step), left = std::sin(angle_min + beam * angle_step);
+        const double x = ahead * mount.ahead_x + left * mount.left_x, y = ahead * mount.ahead_y + left * mount.left_y;
+        const double dx = c * x - s * y, dy = s * x + c * y;
         for (double r = 0.0; r < range - Grid::kResolution; r += Grid::kResolution)
-          grid.count(T_map_laser.x + r * dx, T_map_laser.y + r * dy, false);
-        for (int i = 0; i < 4; ++i) grid.count(T_map_laser.x + range * dx, T_map_laser.y + range * dy, true);
+          grid.count(laser.x + r * dx, laser.y + r * dy, false);
+        for (int i = 0; i < 4; ++i) grid.count(laser.x + range * dx, laser.y + range * dy, true);
       }
       drawn = pose;
       ++mapped;

@@ -17,6 +17,39 @@ c++ -O1 -Wall -Wextra -Werror -o cpp_mapper "$source/examples/cpp_mapper/mapper.
 "$rubble" run s.yaml --out cpp --mapper-command ./cpp_mapper >/dev/null || fail "the C++ example ended with $?"
 json_holds cpp/score.json "j['score'] is not None and j['area_known_m2'] > 8"
 
+# However the laser is mounted, what the examples draw of the same walls is the same.
+cat >mounts.py <<'PYTHON'
+import math
+import subprocess
+import sys
+
+BEAMS, FIRST, STEP = 401, -2.0, 0.01
+RANGES = [2.0 + 0.4 * (FIRST + i * STEP) for i in range(BEAMS)]  # farther to the left
+
+
+def walls(pitch, roll, first, ranges):
+    mount = {"x_m": 0.1, "y_m": 0.05, "z_m": 0.3, "yaw_rad": 0.3, "pitch_rad": pitch, "roll_rad": roll}
+    text = "rubble-mapper 1\n" + "".join("laser.%s %r\n" % item for item in mount.items()) + "start\n"
+    text += "tick 1000000000\nodometry 1000000000 0 0 0 0 0 0\nscan 1000000000 %r %r 0 0.02 5 %d %s\nend\n" % (
+        first, STEP, BEAMS, " ".join(map(repr, ranges)))
+    said = subprocess.run(sys.argv[1:], input=text, stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()
+    at = next(i for i, line in enumerate(said) if line.startswith("map "))
+    width, height, step, x0, y0 = map(float, said[at].split()[1:])
+    rows = said[at + 1 : at + 1 + int(height)]
+    return {(round(x + x0 / step), round(y + y0 / step)) for y, row in enumerate(rows) for x, c in enumerate(row) if c == "#"}
+
+
+last = FIRST + (BEAMS - 1) * STEP
+upright = walls(0.0, 0.0, FIRST, RANGES)
+for name, other in (("roll", walls(0.0, math.pi, -last, RANGES[::-1])), ("pitch", walls(math.pi, 0.0, math.pi - last, RANGES[::-1]))):
+    if len(upright) < 100 or len(upright ^ other) > 4:  # at the edges of cells
+        print("turned by", name, len(upright), len(upright ^ other))
+PYTHON
+for example in "$python_mapper" ./cpp_mapper; do
+  differ=$(python3 mounts.py $example 2>&1)
+  [[ -z $differ ]] || fail "$example maps a laser upside down otherwise: $differ"
+done
+
 # Our own mappers, asked through the protocol, give the same bits.
 for kind in paper robust; do
   "$rubble" run s.yaml --set mapper.kind=$kind --set time_limit_s=60 --out $kind >/dev/null || fail "$kind: $?"
