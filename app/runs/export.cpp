@@ -6,6 +6,7 @@
 #include "app/terminal.h"
 #include "base/error.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
+#include "robot/logs/log.h"
 #include "scenarios/run/map_files.h"
 
 namespace rubble::app {
@@ -15,6 +16,22 @@ struct ExportArguments {
   std::string log;
   std::string out;
 };
+
+/// Relations and references know the scans of a log by its own stamps; an export has those that put it in order.
+void tell_other_stamps(const std::string& log) {
+  if (!std::filesystem::is_regular_file(log)) return;  // what came through a pipe is gone
+  robot::ReplayRobot robot(log);
+  std::size_t scans = 0, others = 0;
+  while (const auto inputs = robot.read())
+    for (const robot::LaserScan& scan : inputs->scans) {
+      ++scans;
+      if (robot.own_stamp(scan.stamp) != scan.stamp) ++others;
+    }
+  if (others == 0) return;
+  tell(log + ": its clock jitters or runs backwards, so " + std::to_string(others) + " of " + std::to_string(scans) +
+       " scans have other stamps in the export; relations and references by the log's own stamps hold for the log "
+       "alone, not for the export");
+}
 
 int export_log(const ExportArguments& arguments) {
   namespace fs = std::filesystem;
@@ -31,20 +48,23 @@ int export_log(const ExportArguments& arguments) {
   else
     robot::export_rawlog(recorded_log(arguments.log), arguments.out);
   print_line(arguments.out);
+  if (!is_map) tell_other_stamps(recorded_log(arguments.log));
   return kOk;
 }
 
 }  // namespace
 
 Command export_command() {
-  return {"export", "Write a recorded log as MRPT .rawlog, or a run's map as .g2o or MRPT .simplemap",
-          "Examples:\n  rubble export runs/latest/log.rlog run.rawlog\n  rubble export runs/latest graph.g2o",
-          [](Options& o) -> Action {
-            auto a = std::make_shared<ExportArguments>();
-            o.argument("log", a->log, "A run folder, a log file of any format that `map` reads, or a map.rmap");
-            o.argument("out", a->out, "The .rawlog, .g2o or .simplemap to write");
-            return [a] { return export_log(*a); };
-          }};
+  return {
+      "export", "Write a recorded log as MRPT .rawlog, or a run's map as .g2o or MRPT .simplemap",
+      "Of a log whose clock jitters the export has other stamps, which is told: relations of the log do not hold for "
+      "it.\nExamples:\n  rubble export runs/latest/log.rlog run.rawlog\n  rubble export runs/latest graph.g2o",
+      [](Options& o) -> Action {
+        auto a = std::make_shared<ExportArguments>();
+        o.argument("log", a->log, "A run folder, a log file of any format that `map` reads, or a map.rmap");
+        o.argument("out", a->out, "The .rawlog, .g2o or .simplemap to write");
+        return [a] { return export_log(*a); };
+      }};
 }
 
 }  // namespace rubble::app
