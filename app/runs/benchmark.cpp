@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -101,13 +102,15 @@ int benchmark(const BenchmarkArguments& arguments) {
   std::fputs(printable(arguments.json ? to_json(result) : to_text(result)).c_str(), stdout);
   if (!result.gaps.empty()) return kInterrupted;
   bool any = false, failed = false;
-  std::vector<std::string> not_judged;
+  std::vector<std::string> not_judged, doubts;
   int gone = 0;
   for (const BenchmarkRow& row : result.rows) {
     gone += !row.results.empty() && !row.results.front().missing.empty() ? 1 : 0;
     for (const BenchmarkResult& r : row.results) {
       if (!r.not_judged.empty() && (not_judged.empty() || not_judged.back() != row.what.name))
         not_judged.push_back(row.what.name);
+      if (!r.doubt.empty() && std::find(doubts.begin(), doubts.end(), r.doubt) == doubts.end())
+        doubts.push_back(r.doubt);
       any = any || r.missing.empty();
       failed = failed || (!r.failure.empty() && !r.stopped);
     }
@@ -120,6 +123,7 @@ int benchmark(const BenchmarkArguments& arguments) {
     tell(std::to_string(gone) + " of " + std::to_string(result.rows.size()) +
          " cases were left out, as what they name is not there; give the folder of the logs with --data "
          "(the list's first lines may say where they come from)");
+  for (const std::string& doubt : doubts) tell(doubt);
   if (!not_judged.empty())
     tell("no reference to judge by: " + joined(not_judged) +
          "; give the case a trajectory, 'reference: FILE.tum', or lay NAME.tum beside the log NAME");

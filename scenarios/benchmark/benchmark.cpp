@@ -22,6 +22,7 @@
 #include "base/trajectory.h"
 #include "robot/logs/log.h"
 #include "scenarios/benchmark/program_meter.h"
+#include "scenarios/evidence/between_scans.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/recorded_log.h"
 #include "scenarios/run/run.h"
@@ -177,6 +178,8 @@ json run_log(const CaseFiles& files, const Scenario& scenario, const std::option
   const auto live = scoring::relation_error(robot.in_own_stamps(mapper->live_trajectory()), known);
   if (error.relations == 0)
     throw InputError(files.relations + ": none of its moments lies in " + files.log + "; are both of the same drive?");
+  const Trajectory scans = robot.in_own_stamps(mapper->trajectory());
+  if (const auto doubt = between_scans(scans, known, files.relations, files.log)) out["doubt"] = *doubt;
   out["error_m"] = error.mean_m;
   out["error_deg"] = rad_to_deg(error.mean_rad);
   out["live_error_m"] = live.mean_m;
@@ -303,6 +306,7 @@ void take(BenchmarkResult& result, const ChildAnswer& answer) {
   const auto number = [&](const char* key) {
     return said.contains(key) ? std::optional<double>(said[key].get<double>()) : std::nullopt;
   };
+  result.doubt = said.value("doubt", "");
   if (said.value("no_reference", false)) result.not_judged = "no reference";
   result.error_m = number("error_m");
   result.live_error_m = number("live_error_m");

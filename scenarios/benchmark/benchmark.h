@@ -36,6 +36,7 @@ struct BenchmarkResult {
   std::optional<double> doubted;          ///< runs whose map the mapper itself does not believe
   std::optional<bool> goal_met;           ///< all of the case's; nothing: it has none, or nothing was measured
   std::vector<std::string> goals_missed;  ///< columns whose goal is not
+  std::string doubt;                      ///< of the error, for people: what it was judged by may be of another log
   std::string not_judged;                 ///< why the error is not known, where the case has a goal of it; empty: it is
 };
 

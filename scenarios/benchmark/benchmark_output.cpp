@@ -222,6 +222,7 @@ std::string to_json(const Benchmark& benchmark) {
       set(j, "error_deg", r.error_deg);
       j["goal_met"] = r.goal_met ? ordered_json(*r.goal_met) : ordered_json();
       j["goals_missed"] = r.goals_missed;
+      if (!r.doubt.empty()) j["doubt"] = r.doubt;
       if (!r.not_judged.empty()) j["not_judged"] = r.not_judged;
       j["scans"] = r.scans;
       set(j, "scans_per_second", r.scans_per_second);

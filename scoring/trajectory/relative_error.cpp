@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -175,6 +176,25 @@ RelationError relation_error(const Trajectory& estimate, const std::vector<Relat
   return out;
 }
 
+RelationsAtScans relations_at_scans(const Trajectory& scans, const std::vector<Relation>& relations) {
+  constexpr double kSame = 1e-3;  // [s]
+  RelationsAtScans out;
+  if (scans.empty()) return out;
+  const auto is_inside = [&](Stamp stamp) { return stamp >= scans.front().stamp && stamp <= scans.back().stamp; };
+  const auto is_scan = [&](Stamp stamp) {
+    const auto after = std::lower_bound(scans.begin(), scans.end(), stamp,
+                                        [](const StampedPose& scan, Stamp s) { return scan.stamp < s; });
+    return (after != scans.end() && after->stamp - stamp <= kSame) ||
+           (after != scans.begin() && stamp - std::prev(after)->stamp <= kSame);
+  };
+  for (const Relation& relation : relations) {
+    if (!is_inside(relation.from) || !is_inside(relation.to)) continue;
+    ++out.relations;
+    if (!is_scan(relation.from) || !is_scan(relation.to)) ++out.between;
+  }
+  return out;
+}
+
 std::size_t false_relations(const std::vector<Relation>& claimed, const Trajectory& truth) {
   return static_cast<std::size_t>(std::count_if(claimed.begin(), claimed.end(), [&](const Relation& relation) {
     const std::optional<TPose2D> error = difference(truth, relation);
@@ -204,6 +224,11 @@ std::vector<Relation> relations_of(const Trajectory& truth, double length, doubl
 
 std::vector<Relation> read_relations(const std::string& path) {
   constexpr std::size_t kFields = 8;
+  const auto fail = [&](int line, const std::string& trouble, bool is_first) {
+    throw InputError(at(path, line, 1,
+                        (is_first ? "is no file of relations: " : "") + trouble +
+                            "; a line of them is 'stamp stamp x y z roll pitch yaw', in s, m and rad"));
+  };
   std::vector<Relation> out;
   std::stringstream lines(read_text_file(path));
   int number = 0;
@@ -213,14 +238,12 @@ std::vector<Relation> read_relations(const std::string& path) {
     std::vector<double> values;
     for (std::string field; fields >> field;) {
       const auto value = parse_number(field);
-      if (!value) throw InputError(at(path, number, 1, in_quotes(field) + " is no number"));
+      if (!value) fail(number, in_quotes(field) + " is no number", out.empty());
       values.push_back(*value);
     }
     if (values.empty()) continue;
     if (values.size() != kFields)
-      throw InputError(
-          at(path, number, 1,
-             "needs 8 numbers, stamp stamp x y z roll pitch yaw, but has " + std::to_string(values.size())));
+      fail(number, "8 numbers are needed, and here are " + std::to_string(values.size()), out.empty());
     out.push_back(
         {Stamp::from_seconds(values[0]), Stamp::from_seconds(values[1]), TPose2D(values[2], values[3], values[7])});
   }

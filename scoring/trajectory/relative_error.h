@@ -48,6 +48,16 @@ struct RelationError {
 /// The estimate is interpolated at the stamps of the relations.
 RelationError relation_error(const Trajectory& estimate, const std::vector<Relation>& relations);
 
+/// How far relations name moments that a log has scans of. A few are between them where a log lost scans; many are of
+/// another clock, or of another log.
+struct RelationsAtScans {
+  std::size_t relations = 0;  ///< both stamps lie in the time of the scans
+  std::size_t between = 0;    ///< of these, a stamp of theirs is farther than 1 ms from that of any scan
+
+  bool doubtful() const { return 20 * between > relations; }
+};
+RelationsAtScans relations_at_scans(const Trajectory& scans, const std::vector<Relation>& relations);
+
 /// Of relations that somebody claims, those that the truth contradicts by more than 0.3 m or 0.2 rad: a loop so far off
 /// leads to another place. Nothing is said of those with a stamp outside the time of the truth.
 std::size_t false_relations(const std::vector<Relation>& claimed, const Trajectory& truth);

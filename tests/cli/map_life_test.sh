@@ -33,11 +33,17 @@ open('own.relations', 'w').write(line(c * dx + s * dy, c * dy - s * dx))
 open('off.relations', 'w').write(line(c * dx + s * dy + 0.5, c * dy - s * dx))
 open('other.relations', 'w').write('1e6 1000010 1 0 0 0 0 0\n')
 PYTHON
-"$rubble" map first --relations own.relations --out own >own.txt || fail "--relations ended with $?"
+"$rubble" map first --relations own.relations --out own >own.txt 2>err.txt || fail "--relations ended with $?"
+[[ -s err.txt ]] && fail "relations of the scans are doubted: $(cat err.txt)"
 json_holds own/score.json "j['relations'] == 1 and j['relation_m'] < 0.001"
 grep -q '^error of a relation  *0.000' own.txt || fail "the error of the relation is not shown: $(cat own.txt)"
 "$rubble" map first --relations off.relations --out off >/dev/null || fail "--relations ended with $?"
 json_holds off/score.json "abs(j['relation_m'] - 0.5) < 0.001"
+awk '{$1 += 0.02; $2 += 0.02; print}' own.relations >between.relations
+expect_exit 0 'between.relations: of 1 relations 1 name a moment at which first/log.rlog has no scan (within 1 ms), and are judged by poses in between' \
+  "$rubble" map first --relations between.relations --out between
+expect_exit 3 'README.md:3:1: is no file of relations: ' "$rubble" map first --relations "$source/README.md" --out none
+grep -qF "is no number; a line of them is 'stamp stamp x y z roll pitch yaw', in s, m and rad" err.txt || fail "it is not told what relations look like: $(cat err.txt)"
 expect_exit 1 "" "$rubble" map first --relations other.relations --out other
 grep -q 'none of its relations lies in the time' out.txt || fail "relations of another time are not told"
 expect_exit 3 "nowhere.relations" "$rubble" map first --relations nowhere.relations --out none

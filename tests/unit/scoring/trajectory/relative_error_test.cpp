@@ -208,5 +208,24 @@ TEST(Relations, AreThoseOfASearchThroughAllPosesToTheBit) {
   EXPECT_TRUE(relations_of(arc(0, 1.0, 0.0)).empty());
 }
 
+/// Relations are of a log where their moments are those of its scans; a millisecond is rounding.
+TEST(RelationsAtScans, CountsThoseOfOtherMoments) {
+  Trajectory scans;
+  for (int i = 0; i < 100; ++i) scans.push_back({Stamp::from_seconds(0.2 * i), {0.1 * i, 0.0, 0.0}});
+  const auto shifted = [&](double by) {
+    std::vector<Relation> relations;
+    for (int i = 0; i + 5 < 100; ++i)
+      relations.push_back({Stamp::from_seconds(0.2 * i + by), Stamp::from_seconds(0.2 * (i + 5) + by), {}});
+    return relations_at_scans(scans, relations);
+  };
+  EXPECT_EQ(shifted(0.0).relations, 95u);
+  for (const double rounding : {0.0, 0.0005, -0.0005}) EXPECT_EQ(shifted(rounding).between, 0u);
+  EXPECT_EQ(shifted(0.1).between, shifted(0.1).relations);
+  EXPECT_TRUE(shifted(0.1).doubtful());
+  EXPECT_FALSE(shifted(0.0).doubtful());
+  EXPECT_EQ(shifted(0.1).relations, 94u) << "those that lie outside are of nobody";
+  EXPECT_EQ(relations_at_scans({}, {{Stamp{}, Stamp{}, {}}}).relations, 0u);
+}
+
 }  // namespace
 }  // namespace rubble::scoring
