@@ -17,19 +17,22 @@ namespace rubble::app {
 namespace {
 
 volatile std::sig_atomic_t signalled = 0;
+volatile std::sig_atomic_t on_terminal = 0;  ///< where a progress line may stand, that the last one wipes
 
 [[noreturn]] void end_now() {
   remove_unfinished_files();
   _exit(kInterrupted);
 }
 
-constexpr char kEnded[] = "rubble: interrupted\n";
+constexpr char kEnded[] = "\r\033[Krubble: interrupted\n";
+constexpr std::size_t kWipe = 4;  ///< of its letters wipe the line
 
 void on_signal_without_rest(int /*signal*/) {
   // A terminal that is held by Ctrl-S, or a full pipe, takes no line: who wants the end does not wait for it.
   pollfd errors{STDERR_FILENO, POLLOUT, 0};
   const bool taken = poll(&errors, 1, 0) == 1 && (errors.revents & POLLOUT) != 0;
-  if (taken && write(STDERR_FILENO, kEnded, sizeof kEnded - 1) < 0) end_now();  // as it does anyway
+  const std::size_t from = on_terminal != 0 ? 0 : kWipe;
+  if (taken && write(STDERR_FILENO, kEnded + from, sizeof kEnded - 1 - from) < 0) end_now();  // as it does anyway
   end_now();
 }
 
@@ -40,6 +43,7 @@ void on_signal(int signal) {
 
 /// SIGHUP stays ignored where it is: who starts a long batch by nohup means to close the terminal.
 void catch_polite(void (*handler)(int)) {
+  on_terminal = isatty(STDERR_FILENO);
   std::signal(SIGINT, handler);
   std::signal(SIGTERM, handler);
   if (std::signal(SIGHUP, handler) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);

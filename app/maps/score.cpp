@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/text/shell.h"
 #include "base/text/text_file.h"
+#include "scenarios/run/recorded_log.h"
 #include "scenarios/run/score_json.h"
 #include "scoring/league/league_victims.h"
 #include "scoring/maps/normalise.h"
@@ -114,6 +115,7 @@ int score(ScoreArguments arguments) {
   if (!arguments.judge.empty()) throw UsageError("--judge goes with --league only; see rubble score --help");
   arguments.map = map_file(arguments.map);
   arguments.truth = map_file(arguments.truth, "truth.tif");
+  scenarios::require_truth(arguments.truth);
   if (is_trajectory(arguments.map)) return score_trajectory(arguments);
   const std::optional<GivenPose> pose = parse_pose(arguments.pose);
   if (pose && (arguments.align != "auto" || !arguments.start.empty()))

@@ -40,7 +40,11 @@ int replay(const ReplayArguments& arguments) {
   permit_command(arguments.mapper, overrides, scenario);
   const scenarios::ReplayReport report = scenarios::replay_run(arguments.run, scenario, options, arguments.film);
   end_progress();
-  if (interrupted()) return kInterrupted;
+  if (interrupted()) {
+    tell("interrupted, so nothing is compared" +
+         (arguments.out.empty() ? "" : "; " + arguments.out + " holds the run up to then"));
+    return kInterrupted;
+  }
   for (const auto& artefact : report.artefacts)
     std::printf("%-18s %s\n", artefact.name.c_str(), artefact.same ? "identical" : "DIFFERENT");
   if (!report.ended) std::printf("%-18s %s\n", "map", "not compared: the recorded run did not end");

@@ -8,4 +8,8 @@ namespace rubble::scenarios {
 /// instead, and the newest recorded run beside it.
 std::string log_in(const std::string& folder);
 
+/// Throws InputError where `path` names the truth of a run folder that has none: with what wrote the folder, and the
+/// newest run beside it that has one.
+void require_truth(const std::string& path);
+
 }  // namespace rubble::scenarios

@@ -72,11 +72,11 @@ class Teller {
 }  // namespace
 
 void serve_mapper(const std::string& kind, int input, int output) {
+  MapperConfig config;
+  config.choose(kind);
   DescriptorSource source(input);
   MessageReader in(source);
   const MapperHeader header = read_header(in);
-  MapperConfig config;
-  config.choose(kind);
   const YamlMap parameters = YamlMap::parse(header.parameters.empty() ? "{}" : header.parameters, "parameters");
   YamlReader reader(parameters);
   config.bind(reader);

@@ -150,7 +150,36 @@ expect_exit 3 'brief: shows no place of first for sure: they have too little in 
 [[ ! -e none ]] || fail "a merge that is refused leaves a folder"
 script -qec "$rubble merge first brief --out none" /dev/null </dev/null >terminal.txt 2>&1
 grep -qE 'looks for a place that both show  [0-9]+ %' terminal.txt || fail "a terminal is not told how far it is: $(cat terminal.txt)"
+python3 - "$rubble" >terminal2.txt <<'PY' || fail "an interrupted merge ends otherwise: $(cat terminal2.txt)"
+import os, pty, signal, sys
+child, end = pty.fork()
+if child == 0:
+    os.execv(sys.argv[1], [sys.argv[1], "merge", "first", "rosie", "--out", "none"])
+said = b""
+try:
+    while piece := os.read(end, 4096):
+        if b"%" in piece and b"%" not in said: os.kill(child, signal.SIGINT)
+        said += piece
+except OSError: pass
+code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+print(code, said)
+sys.exit(0 if code == 130 and said.endswith(b"\r\033[Krubble: interrupted\r\n") else 1)
+PY
 grep -qE $'\r\033\\[Krubble: brief: shows no place' terminal.txt || fail "the reason shares its line: $(cat -v terminal.txt)"
+
+# Of a folder that was mapped from a log the truth is not known, and the run beside it has one.
+touch first/truth.tif
+expect_exit 3 "own/truth.tif: is not there; 'rubble map' wrote the folder, and of a log the truth is not known; give that of a folder that 'rubble run' wrote, the newest beside it is " \
+  "$rubble" score own/map.tif own/truth.tif
+
+# A replay that is interrupted says so, and what its folder is.
+"$rubble" replay first --out again >/dev/null 2>err.txt &
+replay=$!
+until [[ -e again/estimate.tum ]]; do sleep 0.01; done
+kill -INT $replay
+wait $replay
+[[ $? == 130 ]] || fail "an interrupted replay must end with 130: $(cat err.txt)"
+grep -qx 'rubble: interrupted, so nothing is compared; again holds the run up to then' err.txt || fail "an interrupted replay does not say so: $(cat err.txt)"
 
 expect_exit 2 '--continue' "$rubble" map first --continue first --localise first
 expect_exit 2 'x,y,heading_deg' "$rubble" map first --continue first --start here

@@ -173,4 +173,5 @@ for kind in mrpt-rbpf mrpt-icp; do
     cmp peers/runs/*"$kind"*-seed4-*/$file peers2/runs/*"$kind"*-seed4-*/$file || fail "$file of $kind depends on workers"
   done
 done
+expect_exit 4 "'papr' is no mapper; known are " "$rubble" mapper-process papr </dev/null
 finish
