@@ -30,9 +30,9 @@ class RunFolder {
   /// set and it is a run folder: all of its files have names that rubble gives (run_folder_names()), and none of them
   /// was read by this process. So what is read for a run is read before. Throws InputError (cannot be created, not
   /// empty). What it takes the place of waits in its `.replaced` until close() and is put back when this ends before
-  /// that; after a kill it is still there. A new folder in which no scan was mapped before this ends without close() goes
-  /// again: the command was refused, and is given once more when it is mended. `remedy`: what the user may do about a
-  /// folder that is not empty.
+  /// that; after a kill it is still there. A new folder in which no scan was mapped before this ends without close()
+  /// goes again: the command was refused, and is given once more when it is mended. `remedy`: what the user may do
+  /// about a folder that is not empty.
   RunFolder(const std::string& path, bool replace,
             const std::string& remedy = "give another folder with --out, or --force to replace it");
 
