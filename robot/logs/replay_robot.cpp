@@ -1,3 +1,5 @@
+#include <array>
+#include <cstdio>
 #include <utility>
 
 #include "base/bytes.h"
@@ -134,6 +136,20 @@ bool tell_scans_apart(const std::vector<OwnStamp>& names) {
   return static_cast<std::size_t>(lost) <= names.size() / kMostLost;
 }
 
+/// Of a log whose scans come faster than any scanner scans, or a minute apart; nothing of others, nor of a clock that
+/// stands, whose equal stamps sorted_stamps() set apart.
+std::optional<std::string> odd_times(const ForeignLog& log, const std::string& path) {
+  constexpr double kStandingClock = 2e-6;    // [s]
+  constexpr double kShortestPeriod = 0.002;  // [s]
+  constexpr double kLongestPeriod = 60.0;    // [s]
+  const double period = log.model.laser.scan_period;
+  if (log.ticks.size() < 3 || period < kStandingClock || (period >= kShortestPeriod && period <= kLongestPeriod))
+    return std::nullopt;
+  std::array<char, 80> apart{};
+  std::snprintf(apart.data(), apart.size(), ": its scans are %.3g s apart (median): ", period);
+  return path + apart.data() + "are its stamps in another unit than a " + log.format + " has them in?";
+}
+
 }  // namespace
 
 struct ReplayRobot::Impl {
@@ -165,6 +181,7 @@ ReplayRobot::ReplayRobot(const std::string& path) : impl_(std::make_unique<Impl>
   }
   impl_->foreign = read_foreign(bytes, path);
   if (!tell_scans_apart(impl_->foreign.own_stamps)) impl_->foreign.own_stamps.clear();
+  if (const auto note = odd_times(impl_->foreign, path)) impl_->foreign.notes.push_back(*note);
   impl_->format = impl_->foreign.format;
   impl_->model = impl_->foreign.model;
 }
