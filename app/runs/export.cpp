@@ -6,7 +6,6 @@
 #include "app/terminal.h"
 #include "base/error.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
-#include "robot/logs/log.h"
 #include "scenarios/run/map_files.h"
 
 namespace rubble::app {
@@ -18,19 +17,11 @@ struct ExportArguments {
 };
 
 /// Relations and references know the scans of a log by its own stamps; an export has those that put it in order.
-void tell_other_stamps(const std::string& log) {
-  if (!std::filesystem::is_regular_file(log)) return;  // what came through a pipe is gone
-  robot::ReplayRobot robot(log);
-  std::size_t scans = 0, others = 0;
-  while (const auto inputs = robot.read())
-    for (const robot::LaserScan& scan : inputs->scans) {
-      ++scans;
-      if (robot.own_stamp(scan.stamp) != scan.stamp) ++others;
-    }
-  if (others == 0) return;
-  tell(log + ": its clock jitters or runs backwards, so " + std::to_string(others) + " of " + std::to_string(scans) +
-       " scans have other stamps in the export; relations and references by the log's own stamps hold for the log "
-       "alone, not for the export");
+void tell_other_stamps(const std::string& log, const robot::ExportedScans& exported) {
+  if (exported.renamed == 0) return;
+  tell(log + ": its clock jitters or runs backwards, so " + std::to_string(exported.renamed) + " of " +
+       std::to_string(exported.scans) + " scans have other stamps in the export; relations and references by the " +
+       "log's own stamps hold for the log alone, not for the export");
 }
 
 int export_log(const ExportArguments& arguments) {
@@ -43,12 +34,14 @@ int export_log(const ExportArguments& arguments) {
   if (!is_map && fs::path(arguments.out).extension() != ".rawlog")
     throw InputError(arguments.out + ": its ending tells no format that can be written; end it in .rawlog (the log), " +
                      ".g2o or .simplemap (the map)");
+  robot::ExportedScans exported;
+  const std::string log = is_map ? arguments.log : recorded_log(arguments.log);
   if (is_map)
-    scenarios::export_map(arguments.log, arguments.out);
+    scenarios::export_map(log, arguments.out);
   else
-    robot::export_rawlog(recorded_log(arguments.log), arguments.out);
+    exported = robot::export_rawlog(log, arguments.out);
   print_line(arguments.out);
-  if (!is_map) tell_other_stamps(recorded_log(arguments.log));
+  tell_other_stamps(log, exported);
   return kOk;
 }
 

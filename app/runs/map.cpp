@@ -8,8 +8,6 @@
 #include "app/terminal.h"
 #include "base/angle.h"
 #include "base/error.h"
-#include "base/trajectory.h"
-#include "scenarios/evidence/between_scans.h"
 #include "scenarios/run/map_files.h"
 
 namespace rubble::app {
@@ -64,14 +62,7 @@ int map(const MapArguments& arguments) {
   options.mount = pose_of("--laser", arguments.laser, 10);
   options.upside_down = arguments.upside_down;
   tell_vain_settings(overrides);
-  const std::string log = recorded_log(arguments.log);
-  const scenarios::RunReport report = scenarios::map_log(log, scenario, options);
-  const int code = show(report);
-  if (arguments.relations.empty()) return code;
-  const Trajectory scans = read_tum(report.folder + "/estimate.tum");
-  const auto relations = scoring::read_relations(arguments.relations);
-  if (const auto doubt = scenarios::between_scans(scans, relations, arguments.relations, log)) tell(*doubt);
-  return code;
+  return show(scenarios::map_log(recorded_log(arguments.log), scenario, options));
 }
 
 }  // namespace

@@ -22,7 +22,6 @@
 #include "base/trajectory.h"
 #include "robot/logs/log.h"
 #include "scenarios/benchmark/program_meter.h"
-#include "scenarios/evidence/between_scans.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/recorded_log.h"
 #include "scenarios/run/run.h"
@@ -179,7 +178,7 @@ json run_log(const CaseFiles& files, const Scenario& scenario, const std::option
   if (error.relations == 0)
     throw InputError(files.relations + ": none of its moments lies in " + files.log + "; are both of the same drive?");
   const Trajectory scans = robot.in_own_stamps(mapper->trajectory());
-  if (const auto doubt = between_scans(scans, known, files.relations, files.log)) out["doubt"] = *doubt;
+  if (const auto doubt = scoring::between_scans(scans, known, files.relations, files.log)) out["doubt"] = *doubt;
   out["error_m"] = error.mean_m;
   out["error_deg"] = rad_to_deg(error.mean_rad);
   out["live_error_m"] = live.mean_m;

@@ -373,8 +373,12 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   save_map_files(folder, core.mapper(), [&](Stamp delivered) { return robot.own_stamp(delivered); });
   scoring::Evidence evidence;
   if (!robot.reference().empty()) compare_trajectories(evidence, core.mapper(), robot.reference());
-  if (!relations.empty())
-    evidence.relations = scoring::relation_error(robot.in_own_stamps(core.mapper().trajectory()), relations);
+  if (!relations.empty()) {
+    const Trajectory scans = robot.in_own_stamps(core.mapper().trajectory());
+    evidence.relations = scoring::relation_error(scans, relations);
+    const auto doubt = scoring::between_scans(scans, relations, options.relations, log);
+    if (doubt && options.note) options.note(*doubt);
+  }
   evidence.run = run_figures(core, end.sim_s,
                              end.interrupted || !end.failure.empty() ? end.reason
                              : robot.was_torn()                      ? "the log is cut: its torn last frame was dropped"

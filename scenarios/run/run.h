@@ -23,7 +23,7 @@ struct RunOptions {
   std::string relations;                          ///< map_log(): a file of relations to be judged by; empty: none
   std::optional<mrpt::math::TPose2D> mount;       ///< map_log(): of the laser on the robot, instead of the log's
   bool upside_down = false;                       ///< map_log(): the laser hangs so, whatever the log says
-  std::function<void(const std::string&)> note;   ///< map_log(): called for each of ReplayRobot::notes()
+  std::function<void(const std::string&)> note;   ///< map_log(): what of log and relations is doubtful, a line
   bool link_latest = true;                        ///< see RunFolder::link_latest()
   std::function<bool()> interrupted;              ///< asked each tick; true ends the run with its folder complete
   std::function<void(const Progress&)> progress;  ///< called a few times a second

@@ -195,6 +195,15 @@ RelationsAtScans relations_at_scans(const Trajectory& scans, const std::vector<R
   return out;
 }
 
+std::optional<std::string> between_scans(const Trajectory& scans, const std::vector<Relation>& relations,
+                                         const std::string& path, const std::string& log) {
+  const RelationsAtScans at_scans = relations_at_scans(scans, relations);
+  if (!at_scans.doubtful()) return std::nullopt;
+  return path + ": of " + std::to_string(at_scans.relations) + " relations " + std::to_string(at_scans.between) +
+         " name a moment at which " + log +
+         " has no scan (within 1 ms), and are judged by poses in between; are both of one log, by one clock?";
+}
+
 std::size_t false_relations(const std::vector<Relation>& claimed, const Trajectory& truth) {
   return static_cast<std::size_t>(std::count_if(claimed.begin(), claimed.end(), [&](const Relation& relation) {
     const std::optional<TPose2D> error = difference(truth, relation);

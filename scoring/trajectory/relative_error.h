@@ -3,6 +3,7 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,12 @@ struct RelationsAtScans {
   bool doubtful() const { return 20 * between > relations; }
 };
 RelationsAtScans relations_at_scans(const Trajectory& scans, const std::vector<Relation>& relations);
+
+/// What to tell, in one line, of relations many of which name moments without a scan: poses between two scans are
+/// guessed, and the error of such relations is worth little. Nothing: they are of these scans. `path`, `log`: where
+/// both are from.
+std::optional<std::string> between_scans(const Trajectory& scans, const std::vector<Relation>& relations,
+                                         const std::string& path, const std::string& log);
 
 /// Of relations that somebody claims, those that the truth contradicts by more than 0.3 m or 0.2 rad: a loop so far off
 /// leads to another place. Nothing is said of those with a stamp outside the time of the truth.

@@ -40,11 +40,16 @@ struct MrptOdometry {
 LaserScan from_mrpt(const MrptScan& scan, const mrpt::math::TPose3D& T_base_laser);
 Odometry from_mrpt(const MrptOdometry& odometry);
 
+struct ExportedScans {
+  std::size_t scans = 0;
+  std::size_t renamed = 0;  ///< of these, such that have another stamp than in the log: its clock jitters
+};
+
 /// Writes laser scans and odometry as an MRPT .rawlog in observation-only form, labels LASER and ODOMETRY, sorted by
 /// stamp; no IMU entries (they spoil icp-slam's map). A comment entry at the end carries the robot model, so that
 /// read_rawlog() gives back what MRPT's types cannot hold. Debian's rawlog-edit and icp-slam open it.
 /// The source is any log ReplayRobot reads. Throws InputError for it, RunError when the rawlog cannot be written.
-void export_rawlog(const std::string& log_path, const std::string& rawlog_path);
+ExportedScans export_rawlog(const std::string& log_path, const std::string& rawlog_path);
 
 struct PosedScan {
   LaserScan scan;

@@ -6,12 +6,22 @@
 
 namespace rubble::robot {
 
-void export_rawlog(const std::string& log_path, const std::string& rawlog_path) {
+ExportedScans export_rawlog(const std::string& log_path, const std::string& rawlog_path) {
   ReplayRobot replay(log_path);
   GzipFile file(rawlog_path);
-  mrpt_logs().rawlog([&] { return replay.read(); }, replay.model().T_base_laser, comment_of_model(replay.model()),
+  ExportedScans exported;
+  const auto next = [&] {
+    std::optional<Inputs> inputs = replay.read();
+    if (!inputs) return inputs;
+    exported.scans += inputs->scans.size();
+    for (const LaserScan& scan : inputs->scans)
+      if (replay.own_stamp(scan.stamp) != scan.stamp) ++exported.renamed;
+    return inputs;
+  };
+  mrpt_logs().rawlog(next, replay.model().T_base_laser, comment_of_model(replay.model()),
                      [&](std::string_view bytes) { file.put(bytes); });
   file.keep();
+  return exported;
 }
 
 void write_simplemap(const std::string& path, const std::vector<PosedScan>& scans,
