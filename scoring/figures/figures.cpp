@@ -150,8 +150,7 @@ std::vector<Figure> make_table() {
       {"sight_known", "lines of sight known", "%", 3, kNone, 0.0, kShown, of_score(&S::sight_known),
        "of the lines asked about, each between two places, the map shows whether a wall is in between"},
       {"sight_kappa", "lines of sight right", "", 3, kNone, 0.0, kShown, of_score(&S::sight_kappa),
-       "how often it is right about those: 1 always, 0 as chance; up to 0.25 (bare arenas: more) maps of other arenas "
-       "get, worth nothing"},
+       "how often it is right about those: 1 always, 0 as chance; 0.25 (bare arenas: more) scores 0"},
       {"detached", "drawn apart from the arena", "%", 3, kNone, 0.0, kPlain, of_score(&S::detached)},
       {"overlap", "overlap of walls", "", 3, kUp, 0.01, kShown | kRanking | kLeague | kPlaced, of_score(&S::overlap),
        "the lesser of the next two"},
