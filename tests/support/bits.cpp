@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    std::vector<std::pair<std::string, std::string>> overrides;
+    std::vector<rubble::scenarios::Override> overrides;
     for (int i = 3; i < argc; ++i) {
       const std::string set = argv[i];
       const std::size_t equals = set.find('=');
